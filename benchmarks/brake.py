@@ -186,7 +186,7 @@ def ratios(regime: str, pair: Pair) -> Iterator[Ratio | str]:
             compiled = built(Path(folder), SOURCE, vars(kernel))
             theirs, ours = seconds(lambda: pair.theirs(compiled), pair.ours, agree=agree)
     yield Ratio(f"{words}: simulated time over wall time of the march", over([STEPS * STEP] * len(ours), ours))
-    yield Ratio(f"{words}: sweeps a step", [pair.sweeps()])
+    yield Ratio(f"{words}: sweeps per step", [pair.sweeps()])
     yield missing or Ratio(f"{words}: time of a step over that of hand-written C", over(ours, theirs), most=BAR)
 
 

@@ -1,6 +1,6 @@
 """Many one-second runs of the squeal case on a GPU: runs per second, against the processor and the card's peak.
 
-    python benchmarks/gpu.py              measure; without a GPU only a line that says so
+    python benchmarks/gpu.py              measure; without a GPU, print one line to that effect
     python benchmarks/gpu.py --dry-run    compile for compute capability 9.0 without a GPU: registers, local memory
     python benchmarks/gpu.py --map 1000   also a map of 1000 x 1000 runs, friction by angle
     python benchmarks/gpu.py --short      a few short runs against the processor, also on numba's simulator
@@ -8,7 +8,7 @@
 Operations of a step, products and sums counted separately, from `_kernels.mode_rows`. A fixed mode takes 25: its push
 3, its step 7, work 2 and loss 4, the next position 5, and 2 for each of its two sums. A harmonic takes 28: its row 1,
 push 2, step 7, work 2 and loss 4, slope 3, trace 7, softness 2; and 6 for a sine and a cosine, which bending and axial
-harmonics share. The some 150 operations that a step does once are left out.
+harmonics share. About 150 operations done once in each step are left out.
 
 It moves 9 doubles for a fixed mode, 12 for a harmonic and 4 for a sine and cosine: a third of an operation a byte. The
 memory of the card, not its arithmetic, is expected to limit one run per thread, at a few per cent of the peak in double

@@ -35,14 +35,14 @@ def rows() -> Iterator[Ratio | str]:
 def over_before() -> Iterator[Ratio | str]:
     """Yield the wall time of the whole command over that with the older sources, or the reason why there is none."""
     if SHORT or shutil.which("git") is None:
-        yield f"the map of the sources of {BEFORE} takes {'the usual form' if SHORT else 'git, which is not installed'}"
+        yield f"the map of the sources of {BEFORE} needs {'the usual form' if SHORT else 'git, which is not installed'}"
         return
     with sources_of_before() as sources:
         if sources is None:
-            yield f"the map of before takes the commit {BEFORE}, which is not in this copy of the sources"
+            yield f"the earlier map needs the commit {BEFORE}, which is not in this copy of the sources"
             return
         now, before = seconds(sweep, lambda: sweep(sources=sources))
-    yield Ratio("whole command with its figure, over that of before", over(now, before), most=SHARE)
+    yield Ratio("whole command with its figure, over that of an earlier commit", over(now, before), most=SHARE)
 
 
 @contextmanager

@@ -70,7 +70,7 @@ def idle() -> str:
 
 @contextmanager
 def busy(wanted: bool) -> Iterator[None]:
-    """Keep the core of the server busy, if wanted, by a process of the same priority that never rests."""
+    """Keep the core of the server busy, if wanted, with a process of the same priority."""
     if not wanted:
         yield
         return
@@ -84,7 +84,7 @@ def busy(wanted: bool) -> Iterator[None]:
 
 
 def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
-    """Play for some minutes, changing the friction every 1.5 s; return the measurements."""
+    """Use the page for some minutes, changing the friction every 1.5 s; return the measurements."""
     from playwright.sync_api import sync_playwright
 
     server, address = served()
@@ -132,21 +132,21 @@ def table(seen: dict[str, list[float]], words: str) -> list[str]:
         "",
         "| quantity | bar | median | 95 % | worst |",
         "|---|---|---:|---:|---:|",
-        f"| slider to ear [ms], {latency.size} turns, {seen['output'][0]:.0f} of them limiter and output | < 150 | "
+        f"| slider to ear [ms], {latency.size} changes, {seen['output'][0]:.0f} ms of it limiter and output | < 150 | "
         f"{np.median(latency):.0f} | {np.percentile(latency, 95):.0f} | {latency.max():.0f} |",
-        f"| pictures a second | >= 30 | {np.median(fps):.0f} | {np.percentile(fps, 5):.0f} | {fps.min():.0f} |",
-        f"| drop-outs in all | 0 | | | {seen['dropouts'][-1]:.0f} |",
-        f"| share of one core that the server takes | | {seen['share'][0]:.2f} | | |",
+        f"| pictures per second | >= 30 | {np.median(fps):.0f} | {np.percentile(fps, 5):.0f} | {fps.min():.0f} |",
+        f"| drop-outs in total | 0 | | | {seen['dropouts'][-1]:.0f} |",
+        f"| processor time of the server, over that of one core | | {seen['share'][0]:.2f} | | |",
         f"| memory of the server [MB], at the start and at the end | | {first:.0f} | | {last:.0f} |",
     ]
 
 
 def circumstances(minutes: float, with_map: bool, is_busy: bool) -> str:
     """Return a description of the measurement."""
-    words = f"{minutes:g} minutes, {'with maps computed beside it' if with_map else 'without maps'}"
+    words = f"{minutes:g} minutes, {'with maps computed meanwhile' if with_map else 'without maps'}"
     words += ", a busy process on the core of the server" * is_busy
     cores = len(os.sched_getaffinity(0))
-    return words + (f", all on {cores} core{'s' * (cores > 1)}" if cores < (os.cpu_count() or cores) else "")
+    return words + (f", everything on {cores} core{'s' * (cores > 1)}" if cores < (os.cpu_count() or cores) else "")
 
 
 def main() -> None:
@@ -155,16 +155,16 @@ def main() -> None:
     parser.add_argument("--minutes", type=float, default=sized(2.0, 0.1))
     parser.add_argument("--map", nargs="+", choices=("on", "off"), default=["on"], help="both are measured in turns")
     parser.add_argument("--busy", action="store_true", help="with a busy process on the core of the server")
-    parser.add_argument("--cores", type=int, help="cores for all of it, browser included; every one if left out")
+    parser.add_argument("--cores", type=int, help="cores for server and browser together; all if left out")
     parser.add_argument("--write", type=Path)
     asked = parser.parse_args()
     if asked.cores:
         os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: asked.cores])
     if not Path(CHROMIUM).exists():
         if not SHORT:
-            raise SystemExit(f"{CHROMIUM} must be there to play the page in")
+            raise SystemExit(f"{CHROMIUM} must be installed to measure the page")
         print(idle())
-        print(f"skipped: {CHROMIUM} is not there, so no page is played")
+        print(f"skipped: {CHROMIUM} is not installed, so the page is not measured")
         return
     lines = [f"- {line}" for line in machine.description()]
     print("\n".join(lines), flush=True)

@@ -9,7 +9,7 @@ import numpy as np
 import against_siconos as peer
 from ratios import Ratio, show
 
-TITLE = "time of a step of Siconos over ours"
+TITLE = "time of a step of Siconos over that of stridula"
 
 
 def rows() -> Iterator[Ratio | str]:

@@ -39,7 +39,7 @@ HEAD = ("quantity", "bar", "min", "median", "max", "")
 
 @dataclass(frozen=True)
 class Ratio:
-    """A ratio: its quantity, its value in each repeat, and its bar, the smallest or largest median allowed.
+    """A ratio: its quantity, its value in each repeat, and its bar: the smallest or largest median allowed.
 
     Attributes
     ----------

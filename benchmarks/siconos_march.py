@@ -39,7 +39,7 @@ import siconos.numerics as sn
 THETA = 0.5
 TOLERANCE = 1e-12
 SEPARATED, STICKING, SLIDING = range(3)
-# Pivoting leaves round-off of 1e-9 on sliding contacts; sticking is further inside the cone.
+# Pivoting leaves round-off of 1e-9 on sliding contacts; sticking ones lie further inside the cone.
 INSIDE = 1.0 - 1e-6
 # Row of the carriage, a free mode of mass 1: so small that friction cannot slow it. Its square is added to W.
 CARRIAGE = 1e-6

@@ -27,13 +27,13 @@ def rows() -> Iterator[Ratio]:
         fast, sweeps = speeds(system)
         words = f"a lining of {len(system.contacts)} points on a disc that turns"
         yield Ratio(f"{words}: simulated time over wall time", fast)
-        yield Ratio(f"{words}: sweeps a step", sweeps)
+        yield Ratio(f"{words}: sweeps per step", sweeps)
     brake = st.load_scenario("brake").system
     fast, sweeps = speeds(brake)
     words = f"brake, {len(brake.contacts)} points on two faces"
     yield Ratio(f"{words}: simulated time over wall time", fast)
-    yield Ratio(f"{words}: sweeps a step", sweeps)
-    yield Ratio("a rider on a disc that turns, over the same on one at rest", turning())
+    yield Ratio(f"{words}: sweeps per step", sweeps)
+    yield Ratio("a rider on a turning disc, over the same on a disc at rest", turning())
 
 
 def speeds(system: st.System) -> tuple[list[float], list[float]]:

@@ -18,7 +18,7 @@ PROCESSES = {
 
 
 def rows() -> Iterator[Ratio]:
-    """Yield each kind of process."""
+    """Yield the ratio of each kind of process."""
     taken = seconds(*(lambda given=given: fresh(given) for given, _, _ in PROCESSES.values()))
     for (words, (_, limit, barred)), times in zip(PROCESSES.items(), taken, strict=True):
         yield Ratio(words, [one / limit for one in times], most=1.0 if barred else None)

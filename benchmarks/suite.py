@@ -5,8 +5,8 @@
     python benchmarks/suite.py --short                       check in seconds that everything runs and agrees
 
 Each section also runs alone: `python benchmarks/scaling.py`. A ratio whose median is on the wrong side of its bar
-is marked; the exit status is 0 all the same, because a machine may be busy. It is 1, with
-a message, if the two sides of a ratio do not agree.
+is marked; the exit status is still 0, because a machine may be busy. It is 1, with a message,
+if the two sides of a ratio do not agree.
 """
 
 from __future__ import annotations

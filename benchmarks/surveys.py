@@ -29,7 +29,7 @@ def rows() -> Iterator[Ratio]:
     if failed := [message for message in found.message.values.ravel().tolist() if message]:
         raise SystemExit(f"every point of the survey must be computed, got {failed[0]}")
     grown = int(found.unstable_modes.sum())
-    yield Ratio(f"{grown} modes that grow, each with its run, {WORKERS} workers: time over 1 min", [minutes])
+    yield Ratio(f"{grown} growing modes, each with its run, {WORKERS} workers: time over 1 min", [minutes])
 
 
 if __name__ == "__main__":

@@ -103,7 +103,7 @@ def same_start(found: Sequence[xr.Dataset], expected: Sequence[xr.Dataset]) -> N
 
 
 def pad(contacts: int) -> st.System:
-    """Return a block on eight springy feet, of which some are pressed on a belt: the same modes for any number."""
+    """Return a block on eight springy feet, some of them on a belt: the same modes for any number of contacts."""
     size = 2 + 2 * FEET
     stiffness, both = np.zeros((size, size)), np.zeros((2, size))
     both[:, :2] = np.eye(2)

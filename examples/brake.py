@@ -2,11 +2,11 @@
 Disc brake
 ==========
 
-Two lined pads press on a disc with a hat that turns: which modes grow, their limit cycle, and how the pads press.
+Two lined pads press on a turning disc with a hat: the growing modes, their limit cycle, and the pressure of the pads.
 :doc:`../brake` explains it.
 
-The disc is of cast iron, held at the flange of its hat. Each pad is a backing plate of steel with a lining, whose
-face touches the disc with all its points through the stiffness of its rough surface; springs hold the backing plates.
+The disc is made of cast iron and held at the flange of its hat. Each pad is a backing plate of steel with a lining. All
+points of the lining's face touch the disc through the stiffness of its rough surface; springs hold the backing plates.
 """
 
 from dataclasses import replace

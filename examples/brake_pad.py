@@ -2,11 +2,12 @@
 Pad on a disc, node by node
 ===========================
 
-Which modes of a brake pad on a disc grow in sliding, and the first hundredth of a second of their growth.
+The modes of a brake pad on a disc that grow in sliding, and the first hundredth of a second of their growth.
 
-A disc of cast iron, clamped inside, turns under a pad of friction material that springs hold and 600 N press. Both are
-elastic bodies in space; the pad touches with fifteen of its nodes, each of which slides, sticks or lifts off by itself.
-The disc is seen from where it stands: its surface moves under the pad, and its vibration does not turn with it.
+A disc of cast iron, clamped inside, turns under a pad of friction material, which is held by springs and pressed with
+600 N. Both are elastic bodies in space; the pad touches with fifteen of its nodes, each of which slides, sticks or
+lifts off by itself. The disc has a frame at rest: its surface moves under the pad, and its vibration does not turn with
+it.
 """
 
 import matplotlib.pyplot as plt
@@ -42,7 +43,7 @@ pad = st.SolidBody(mesh, LINING, points=feet | backs, cutoff=12e3, damping=0.004
 
 
 def brake(friction: float) -> st.System:
-    """The pad, pressed on the disc that turns."""
+    """The pad, pressed on the turning disc."""
     first, second = disc.frame[:2]
     contacts = []
     for name, place in feet.items():

@@ -2,13 +2,12 @@
 Modes beyond a cutoff
 =====================
 
-When modes beyond a cutoff must still yield: a block on five feet, and a slender beam that judders. :doc:`../cutoffs`
-explains it.
+Effect of the modes beyond a cutoff: a block on five feet, and a slender beam that judders. :doc:`../cutoffs` explains
+it.
 
 A block presses on a moving floor with the nodes of its lower face. Modes up to a cutoff are kept; those left out are
-dropped, or yield statically (`residual_flexibility`). Equilibrium and squeal of all modes tell which is right. Then
-the slider of the paper's judder, a beam so slender that what it yields at its tip at once, in truth runs away as
-waves.
+dropped, or yield statically (`residual_flexibility`). Equilibrium and squeal with all modes show which is right. The
+second system is the slider of the paper's judder, a beam so slender that a displacement of its tip runs away as waves.
 """
 
 from dataclasses import replace
@@ -64,7 +63,7 @@ MASS, STIFFNESS, POINTS = block()
 
 
 def pressed(cutoff: float | None, residual: bool = True) -> st.System:
-    """The block, held by springs and pressed by 600 N on a floor that runs at 2 m/s."""
+    """The block, held by springs and pressed by 600 N on a floor that moves at 2 m/s."""
     body = st.ReducedBody(
         MASS, STIFFNESS, POINTS, damping=0.003, cutoff=cutoff, residual_flexibility=residual, name="block"
     )

@@ -2,11 +2,11 @@
 A mass on a belt
 ================
 
-Stick-slip of a mass on a moving belt, held by a spring, under four laws of friction: who swings, how far, and why.
+Stick-slip of a mass on a moving belt, held by a spring, under four laws of friction.
 
-Where friction falls with the slip velocity, the mass sticks to the belt until its spring tears it off, slides back and
-sticks again. With equal static and kinetic friction it swings by belt velocity over frequency each way, as any start
-would leave it without damping, and hardly sticks.
+If friction falls with the slip velocity, the mass sticks to the belt until its spring tears it off, slides back and
+sticks again. With equal static and kinetic friction it swings with an amplitude of belt velocity over angular
+frequency, as it would after any start without damping, and hardly sticks.
 """
 
 import stridula as st

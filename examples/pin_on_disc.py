@@ -2,11 +2,11 @@
 Pin on disc
 ===========
 
-A pin rubs on a disc and squeals: one unstable mode, its growth, and the limit cycle in which it ends.
+A pin rubs on a disc and squeals: one unstable mode, its growth, and its limit cycle.
 :doc:`../pin-on-disc` explains it.
 
-The rig of Allgaier, Gaul, Keiper and Willner (1999), as Ansys' verification VM275 has it: a disc of aluminium, 25 mm
-thick, held at its shaft, and a pin of 10 mm x 10 mm x 149 mm that leans by 4 degrees, its far end held, with five
+The rig of Allgaier, Gaul, Keiper and Willner (1999), as in verification case VM275 of Ansys: a disc of aluminium, 25 mm
+thick, held at its shaft, and a pin of 10 mm x 10 mm x 149 mm that leans by 4 degrees, held at its far end, with five
 nodes of one edge on the disc. The rig and Ansys have one unstable mode, at 2215 Hz.
 """
 
@@ -75,7 +75,7 @@ for friction, modes in found.items():
 backwards = audible(rig(0.152, -1.0))
 print("backwards:", backwards or "no mode grows")
 
-# In time some nodes of the edge lift off at rest; from there the mode grows out of ten nanometres.
+# Some nodes of the edge are open in equilibrium; the run starts there, with ten nanometres of the growing mode.
 system = rig(0.152)
 theory = st.sliding_stability(system)
 status = [str(word) for word in theory.status.values]

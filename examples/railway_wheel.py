@@ -2,11 +2,11 @@
 Railway wheel
 =============
 
-A railway wheel that squeals in a curve: the modes that grow, standing and rolling, and the limit cycle.
-:doc:`../wheel` explains it.
+A railway wheel that squeals in a curve: the growing modes, standing and rolling, and the limit cycle. :doc:`../wheel`
+explains it.
 
-The shipped scenario ``wheel``. The rim creeps sideways over a rail point; along the rail nothing slips, for the rail
-moves below the hub as the wheel turns.
+This is the shipped scenario ``wheel``. The rim creeps sideways over a rail point; it does not slip along the rail,
+because the rail moves below the hub as the wheel turns.
 """
 
 import matplotlib.pyplot as plt
@@ -23,7 +23,7 @@ frequency, numbers = wheel.modes().frequency, wheel.numbers
 
 
 def growing(changes: dict[str, object], near: float) -> str:
-    """The modes that grow near a frequency, in words."""
+    """The growing modes near a frequency, as text."""
     theory = st.sliding_stability(st.load_scenario("wheel", changes).system)
     here = theory.unstable.values & (np.abs(theory.frequency.values / near - 1.0) < 0.02)
     found = zip(theory.frequency.values[here], theory.growth_rate.values[here], strict=True)
@@ -36,7 +36,7 @@ for order in range(2, 6):
     hertz = frequency[mode]
     print(f"{order} nodal diameters: {hertz:.0f} Hz; standing {growing(STANDING, hertz)}; rolling {growing({}, hertz)}")
 
-# The limit cycle, seen below the hub and a quarter of a wave of two further round.
+# Limit cycle below the hub, and a quarter of a wavelength further round for two nodal diameters.
 angles = -np.pi / 2.0, -np.pi / 4.0
 probes = [st.Velocity(wheel.at((RADIUS, angle, 0.0)), "z") for angle in angles]
 run = st.simulate(system, 1.5, sample_rate=5e4, probes=probes)

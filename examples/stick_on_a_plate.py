@@ -2,8 +2,8 @@
 A stick on a plate
 ==================
 
-A steel stick is pushed across a plate of steel and squeals. The plate is what you hear: its sound in time, and in
-which directions it goes. The shipped scenario ``squeal-on-plate``.
+A steel stick is pushed across a plate of steel and squeals: the sound of the plate in time, and its directions. This is
+the shipped scenario ``squeal-on-plate``.
 """
 
 import numpy as np

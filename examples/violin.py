@@ -2,10 +2,10 @@
 Violin
 ======
 
-The G string of a violin under a bow: Helmholtz motion, and Schelleng's diagram of the bow forces that keep it up.
+The G string of a violin under a bow: Helmholtz motion, and Schelleng's diagram of the bow forces that sustain it.
 :doc:`../violin` explains it.
 
-The shipped scenario ``violin`` has a bow 8 mm wide; the diagram is that of a narrow one, for which theory is.
+The shipped scenario ``violin`` has a bow 8 mm wide; the diagram is that of a narrow one, to which the theory applies.
 """
 
 import matplotlib.pyplot as plt
@@ -20,7 +20,7 @@ string, law = scenario.system.contacts[0].track.body, scenario.system.contacts[0
 FUNDAMENTAL, SPEED = float(string.modes().frequency[0]), 0.2
 IMPEDANCE = string.tension / (2.0 * string.length * FUNDAMENTAL)
 CONTRAST = law.static - law.kinetic
-# What a corner loses on the string in a period, as if it were at the bridge: the fundamental falls by its damping.
+# Loss of a corner in a period as a resistance at the bridge, from the damping of the fundamental.
 DECAY = 0.5 * float(string.modes().damping_rate[0])
 RESISTANCE = 2.0 * IMPEDANCE * FUNDAMENTAL / DECAY
 # Torsional waves, 5.2 times as fast as transverse ones, on a round string.
@@ -43,7 +43,7 @@ print(f"through a top of spruce {float(st.equivalent_level(heard, 'A').max()):.0
 st.listen(heard)
 
 # %%
-# Schelleng's diagram: the bow force goes slowly from that of a note to another one, and stays there.
+# Schelleng's diagram: the bow force changes slowly from that of a note to another value, and stays there.
 
 
 def most(place: float) -> float:
@@ -57,7 +57,7 @@ def least(place: float) -> float:
 
 
 def bowed(place: float, before: float, after: float) -> st.System:
-    """The string under a narrow bow at a share of its length; from 0.4 s on its force [N] goes to another."""
+    """The string under a narrow bow at a fraction of its length, whose force [N] changes from 0.4 s to 0.6 s."""
     hair = st.PointMass(1e-6, name="hair")
     point = string.at(place * string.length)
     contact = st.PointContact(

@@ -2,11 +2,11 @@
 Wine glass
 ==========
 
-A wet finger on the rim of a wine glass: the mode that grows, its limit cycle, and the beats that you hear.
-:doc:`../glass` explains it.
+A wet finger on the rim of a wine glass: the growing mode, its limit cycle, and the beats that you hear. :doc:`../glass`
+explains it.
 
-The shipped scenario ``glass``. The glass turns below a finger that stays where it is, as in Franklin's armonica; seen
-from a glass that stands, the finger goes round.
+This is the shipped scenario ``glass``. The glass turns below a finger at rest, as in Franklin's armonica; seen from the
+glass, the finger goes round.
 """
 
 import matplotlib.pyplot as plt
@@ -25,7 +25,7 @@ for order in range(2, 5):
     k, j = (int(np.flatnonzero((numbers == (order, 0, side)).all(axis=1))[0]) for side in (0, 1))
     print(f"{order} waves: {frequency[k]:.0f} Hz, along the rim over across it {rows[1, j] / rows[0, k]:.3f}")
 
-# Linear theory: how much the mode of two waves is fed, over the load.
+# Linear theory: growth of the mode of two waves over the load.
 for load in (0.1, 0.2, 0.5, 1.0):
     theory = st.sliding_stability(st.load_scenario("glass", {"drives.0.z": -load}).system)
     fastest = int(theory.growth_rate.values[theory.frequency.values > 0.0].argmax())
@@ -34,7 +34,7 @@ for load in (0.1, 0.2, 0.5, 1.0):
 onset = st.critical_value("glass", "drives.0.z", -1.0, -0.05)
 print(f"from {-float(onset.value):.3f} N on it grows, at {float(onset.frequency):.1f} Hz")
 
-# In time: the finger is lifted after 1.2 s. Radial velocity where the rim moves most across itself, and at a node.
+# In time: the finger is lifted after 1.2 s. Radial velocity where the rim vibrates most, and at a node.
 places = [glass.at((RIM, angle, HEIGHT)) for angle in (0.0, np.pi / 4.0)]
 probes = [st.Velocity(places[0], "x"), st.Velocity(places[1], "x"), st.Velocity(places[1], "y")]
 lifted = st.Force(finger.centre, z=-1.0, history=st.Sampled((0.0, 1.2, 1.21), (1.0, 1.0, -0.3)))
@@ -46,7 +46,7 @@ spectrum = np.abs(np.fft.rfft(most[rubbed] * np.hanning(rubbed.sum()), 1 << 20))
 tone = float(np.fft.rfftfreq(1 << 20, time[1] - time[0])[spectrum.argmax()])
 print(f"it sings at {tone:.1f} Hz; the rim moves by {np.abs(most[rubbed]).max():.2f} m/s")
 
-# A point of the glass is carried round: of two waves it sees a share of each of the pair.
+# A point of the glass turns with it: its velocity is a combination of both modes of the pair.
 turned = 2.0 * glass.turning * time
 on_the_glass = np.cos(turned) * most + np.sin(turned) * node
 sizes = {word: np.abs(hilbert(one)) for word, one in (("space", most), ("node", node), ("glass", on_the_glass))}

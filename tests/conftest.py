@@ -13,7 +13,7 @@ from hypothesis import settings
 
 from stridula.cli import main
 
-# No test finds what another one has kept, nor leaves anything in the user's folder; processes inherit it.
+# No test uses the cache of another one or of the user; processes inherit it.
 os.environ["STRIDULA_CACHE_DIR"] = "off"
 
 # The same examples in every run: a test that fails must fail again.
@@ -26,12 +26,12 @@ def pytest_addoption(parser):
 
 
 def pytest_configure_node(node):
-    """Tell a process of tests the order."""
+    """Pass the order to a worker process."""
     node.workerinput["order"] = node.config.option.order
 
 
 def pytest_collection_modifyitems(config, items):
-    """Take files in an order that nothing can lean on, and in each its tests; all processes in the same."""
+    """Shuffle files, and the tests in each, equally in all processes."""
     files: dict[Path, list[pytest.Item]] = {}
     for item in items:
         files.setdefault(item.path, []).append(item)

@@ -2,7 +2,7 @@
 Two beams that squeal
 =====================
 
-Build a system, run it, and find out what it does: a steel strip is dragged along another one and squeals. You need no
+Build a system, run it, and look at the result: a steel strip is dragged along another one and squeals. You need no
 scenario file.
 """
 
@@ -80,8 +80,8 @@ for frequency, growth in zip(growing.frequency.values, growing.growth_rate.value
     print(f"{frequency:7.0f} Hz grows by {growth:6.0f} /s")
 
 # %%
-# Several modes grow. The run decides: the mode near 2.8 kHz is the one that you hear, a little lower, because the
-# contact is open for part of each period.
+# Several modes grow. The run shows which one you hear: the mode near 2.8 kHz, slightly lower, because the contact is
+# open for part of each period.
 
 shake = run.acceleration.isel(acceleration_probe=0)
 plot.spectrum(shake, system, theory, highest=8e3)

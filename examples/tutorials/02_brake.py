@@ -10,9 +10,9 @@ face. The mesh is small, so that this page takes seconds.
 # The pad
 # -------
 # :meth:`stridula.SolidMesh.read` takes files of gmsh, Abaqus, Nastran and VTK. To keep this page without files, the
-# mesh is made in place: a sector of a ring, two elements across and four along. Groups of the file, or the sides of
-# the sector, are the names of faces. Modes up to the cutoff are found from sparse matrices; the points of the contact
-# face yield statically for all modes above it.
+# mesh is created here: a sector of a ring, two elements across and four along. Faces have the names of groups in the
+# file, or of the sides of the sector. Modes up to the cutoff are computed from sparse matrices; all modes above it
+# contribute their static flexibility at the points of the contact face.
 
 import stridula as st
 from stridula import analysis, plot
@@ -44,9 +44,9 @@ disc = st.AxisymmetricBody(
 # %%
 # Contact, load, springs
 # ----------------------
-# A ``SurfaceContact`` finds the points of the face, what lies before them, the velocity of the disc there, and the
-# area of each. Its ``stiffness`` is that of the rough surface, for a unit of area. 2 kN press on the back of the pad;
-# springs hold its corners.
+# A ``SurfaceContact`` finds the points of the face with their areas, the opposite points of the disc, and the velocity
+# of the disc there. Its ``stiffness`` is that of the rough surface, per area. A force of 2 kN presses on the back of
+# the pad; springs hold its corners.
 
 
 def brake(friction: float) -> tuple[st.System, st.SurfaceContact]:
@@ -81,7 +81,7 @@ for friction in (0.2, 0.4, 0.6):
 # %%
 # In time
 # -------
-# The run starts in sliding equilibrium with the fastest growing mode on top, 0.1 µm high.
+# The run starts in sliding equilibrium with 0.1 µm of the fastest growing mode added.
 
 system, face = brake(0.6)
 start = st.InitialEquilibrium(mode="most unstable", amplitude=1e-7)
@@ -95,7 +95,7 @@ plot.timeline(run, ["velocity", "normal_force", "status"])
 #
 # How the pad presses
 # -------------------
-# :func:`stridula.analysis.surface` puts the points of a face together: forces, areas, pressure.
+# :func:`stridula.analysis.surface` combines the points of a face: forces, areas, pressure.
 
 found = analysis.surface(run, face)
 late = (0.02, 0.03)
@@ -109,7 +109,7 @@ plot.surface(found, span=late)
 plot.bodies(system, 0.0295)
 
 # %%
-# What you hear is near the growing mode:
+# The tone that you hear is near the growing mode:
 
 frequencies, levels = analysis.tones(run.velocity.isel(velocity_probe=0).sel(time=slice(*late)))
 for hertz, level in zip(frequencies[:3], levels[:3], strict=True):

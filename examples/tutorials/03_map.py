@@ -30,9 +30,9 @@ found = st.sweep("squeal", points, ["regime"], duration=1.0)
 plot.regime_map(found)
 
 # %%
-# Colours are the regimes of the runs. The dashed line bounds steady sliding: below it the tip slides, or slides off
-# the track. Above it friction can hold the force for good. Yet in a band above the line the tip does not come to
-# rest: it lands, digs in and squeals.
+# Colours are the regimes of the runs. The dashed line bounds steady sliding: below it the tip slides, or slides off the
+# track. Above it friction can hold the force permanently. Yet in a band above the line the tip does not come to rest:
+# it lands, digs in and squeals.
 #
 # Cuts
 # ----
@@ -45,16 +45,16 @@ for friction, word, hertz in zip(cut.friction.values, cut.regime.values, cut.fre
 # %%
 # What does linear theory say?
 # ----------------------------
-# Nothing grows on this map: linear theory of the held contact is blind to motion that needs a landing to begin.
+# No mode grows on this map: linear theory of the held contact does not include motion that begins with a landing.
 
 counts = st.agreement(found)
-print(f"{counts.agree.item()} of {counts.compared.item()} runs do as linear theory says")
+print(f"{counts.agree.item()} of {counts.compared.item()} runs agree with linear theory")
 
 # %%
 # Where does it begin?
 # --------------------
 # Under an imposed velocity, as in the case ``weak-pressure``, the tip slides nearly everywhere, and linear theory
-# applies. :func:`stridula.root_loci` follows the modes over one key without any run, and
+# applies. :func:`stridula.root_loci` tracks the modes over one key without any run, and
 # :func:`stridula.critical_value` finds the onset.
 
 loci = st.root_loci("weak-pressure", "friction", np.linspace(0.0, 1.6, 33), highest=4e3)
@@ -65,8 +65,8 @@ plot.root_loci(loci, [onset])
 # %%
 # Your own measure, your own system
 # ---------------------------------
-# A measure may be a function of a record. In place of a scenario, a sweep takes a function that makes a system of
-# values.
+# A measure may be a function of a record. In place of a scenario, a sweep accepts a function that returns a system for
+# given values.
 
 
 def louder(friction: float) -> st.System:
@@ -86,6 +86,6 @@ found = st.sweep(
 print(found[["regime", "largest"]].to_dataframe()[["regime", "largest"]])
 
 # %%
-# Long sweeps keep their finished parts on disk (``out="map.nc"``) and resume after a crash; ``stridula sweep`` does
-# the same from the command line. :doc:`../maps` and :doc:`../surveys` have more: sensitivity, agreement, every
+# Long sweeps keep their finished parts on disk (``out="map.nc"``) and resume after a crash; ``stridula sweep`` does the
+# same from the command line. :doc:`../maps` and :doc:`../surveys` continue with sensitivity, agreement, and every
 # growing mode followed in time.

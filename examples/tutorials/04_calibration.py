@@ -2,16 +2,16 @@
 Calibration to a measurement
 ============================
 
-You have measured something and want parameters whose run shows the same. :func:`stridula.calibrate` searches for
-them. This page also shows how to find out what a measurement does not determine.
+You have measured a quantity and want parameters for which a run gives the same value. :func:`stridula.calibrate`
+searches for them. This page also shows how to find the parameters that a measurement does not determine.
 """
 
 # %%
 # A rig
 # -----
-# A block of 0.5 kg on a belt at 5 cm/s, held by a spring and pressed by 10 N. It sticks and slips. A function makes
-# the system of the unknown parameters, here the kinetic coefficient of friction and the drop from the static one to
-# it; with it come arguments of ``simulate``.
+# A block of 0.5 kg on a belt at 5 cm/s, held by a spring and pressed by 10 N. It sticks and slips. A function returns
+# the system for the unknown parameters, here the kinetic coefficient of friction and its difference from the static
+# one, together with arguments of ``simulate``.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -32,8 +32,8 @@ def rig(kinetic: float, contrast: float) -> tuple[st.System, dict[str, float]]:
 # %%
 # A measurement
 # -------------
-# So that you can see whether the search is right, the measurement is made here, with coefficients that the search
-# does not know. In your case these numbers come from the rig.
+# So that you can check the search, the measurement is computed here, with coefficients that the search does not know.
+# In your case these numbers come from the rig.
 
 KINETIC, CONTRAST = 0.30, 0.15
 system, numbers = rig(KINETIC, CONTRAST)
@@ -46,7 +46,7 @@ plot.timeline(measured.sel(time=slice(0.0, 0.5)), ["contact_position", "tangenti
 # One target
 # ----------
 # A target is a pair of bounds on a measure: the measurement and its uncertainty. Differential evolution starts from a
-# seed; the same seed gives the same search, and the runs of a generation march side by side.
+# seed; the same seed gives the same search, and the runs of a generation are computed side by side.
 
 ranges = {"kinetic": (0.1, 0.6), "contrast": (0.02, 0.4)}
 pitch = {"frequency": (0.998 * frequency, 1.002 * frequency)}
@@ -71,18 +71,18 @@ def search(targets: dict[str, tuple[float, float]], seed: int) -> tuple[float, f
 alone = [search(pitch, seed) for seed in range(3)]
 
 # %%
-# Every search meets the target with another kinetic coefficient: the rhythm of stick-slip depends on the contrast
+# Each search meets the target with a different kinetic coefficient: the rhythm of stick-slip depends on the contrast
 # only. Always look at the spread over seeds before you trust one set of parameters.
 #
 # A second target
 # ---------------
-# The mean drag determines the rest. It is no measure of the package, so it is given as a function of the record
+# The mean drag determines the rest. It is not a measure of the package, so it is given as a function of the record
 # (``measures`` above).
 
 both = [search(pitch | {"drag": (0.99 * drag, 1.01 * drag)}, seed) for seed in range(3)]
 
 # %%
-# What the targets determine, in one figure: the rhythm alone a line, both together a point.
+# The figure shows the parameters that the targets determine: the rhythm alone gives a line, both together a point.
 
 figure, axes = plt.subplots(figsize=(6.0, 4.2), layout="constrained")
 axes.plot(*np.transpose(alone), "o", label="rhythm")
@@ -96,5 +96,5 @@ figure
 # %%
 # Scenarios are calibrated in the same way, over any of their keys: ``st.calibrate("squeal", ranges={"friction": (0.5,
 # 1.5)}, ...)`` or ``stridula calibrate`` on the command line. Runs that squeal are chaotic: give such targets an
-# uncertainty, and check the best set with :func:`stridula.ensemble`. :doc:`../maps` has scales of targets and targets
-# of several runs.
+# uncertainty, and check the best set with :func:`stridula.ensemble`. :doc:`../maps` describes scales of targets and
+# targets of several runs.

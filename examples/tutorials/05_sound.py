@@ -8,9 +8,8 @@ From a run to sound pressure, levels, third-octave bands and a WAV file.
 # %%
 # Sound pressure
 # --------------
-# A record holds the forces at the contact. :func:`stridula.radiate` drives the modes of the bodies with them again,
-# and computes the sound pressure in pascals at any place. Without listeners it takes two ears a metre above the
-# track.
+# A record contains the forces at the contact. From them :func:`stridula.radiate` recomputes the motion of the bodies,
+# and from this the sound pressure in pascals at any place. The default listeners are two ears a metre above the track.
 
 import stridula as st
 from stridula import plot
@@ -48,7 +47,7 @@ print(f"LAFmax {float(fast.max()):.1f} dB")
 # %%
 # Which body is it?
 # -----------------
-# ``bodies`` chooses what is heard.
+# ``bodies`` selects the bodies that you hear.
 
 for name, body in (("slider", system.slider), ("track", system.track)):
     alone = st.radiate(run, system, bodies=[body])
@@ -86,4 +85,4 @@ st.listen(softly, full_scale=full_scale)
 st.listen(heard, full_scale=full_scale)
 
 # %%
-# :doc:`../hearing` has loudness, sharpness and roughness, and :doc:`../sound` the equations and their accuracy.
+# :doc:`../hearing` describes loudness, sharpness and roughness, and :doc:`../sound` the equations and their accuracy.

@@ -137,7 +137,7 @@ def one_or_each(name: str, value: Any, check: Callable[[str, Any], T], size: int
     if isinstance(value, str) or not (hasattr(value, "__len__") and hasattr(value, "__getitem__")):
         return check(name, value)
     if size is not None and len(value) != size:
-        raise ArgumentError(name, f"hold one for each contact, {size} in all", value)
+        raise ArgumentError(name, f"have one value for each contact, {size} in all", value)
     return tuple(check(f"{name}[{number}]", one) for number, one in enumerate(value))
 
 

@@ -149,5 +149,5 @@ def _check_ends(first: BodyPoint, second: BodyPoint | None) -> None:
     if second is not None:
         instance("second", second, BodyPoint)
         if second == first:
-            words = "be another point than first (equal bodies need names)"
+            words = "be a point other than first (equal bodies need names)"
             raise ArgumentError("second", words, second, got=f"{brief(second)} for both")

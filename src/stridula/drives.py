@@ -37,7 +37,7 @@ class Drive:
     kind : str
         Name in scenarios.
     place : str
-        Where it acts: a ``body``, a ``point`` of one, the ``root`` of one, or empty for the whole system.
+        Part of the system that it acts on: a ``body``, a ``point`` or the ``root`` of one, or empty for all.
     """
 
     kind: ClassVar[str]
@@ -90,7 +90,7 @@ class Force(Drive):
     Parameters
     ----------
     point : BodyPoint
-        Where it acts.
+        Point at which the force acts.
     axial : float, optional
         Component along the body's axis [N], tip to root: a push towards the track is negative.
     transverse : float, optional
@@ -321,7 +321,7 @@ class InitialState(Drive):
 
     @property
     def vectors(self) -> dict[str, Sequence[float]]:
-        """The given ones of displacement and velocity."""
+        """Displacement and velocity, as far as given."""
         given = {"displacement": self.displacement, "velocity": self.velocity}
         return {name: values for name, values in given.items() if values is not None}
 

@@ -1,4 +1,4 @@
-"""Packages that come with an extra: where one is missing, a line says what needs it and how it is installed."""
+"""Packages of extras: if one is missing, an error names its purpose and the command that installs it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
-# What needs a package, and the extra that brings it.
+# Purpose of each package, and its extra.
 NEEDED = {
     "pydantic": ("scenarios need", "scenarios"),
     "h5netcdf": ("records in files need", "files"),
@@ -28,11 +28,11 @@ NEEDED = {
 
 
 class MissingPackage(ModuleNotFoundError):
-    """A package that an extra brings is not installed."""
+    """A package of an extra is not installed."""
 
 
 def missing(package: str) -> MissingPackage:
-    """Return the error for a package that is not installed, in words for users."""
+    """Return the error for a package that is not installed."""
     needs, extra = NEEDED[package]
     return MissingPackage(f"{needs} {package}, which is not installed: {how_to_install(extra)}", name=package)
 
@@ -50,7 +50,7 @@ def how_to_install(extra: str) -> str:
 
 @contextmanager
 def named_extras() -> Iterator[None]:
-    """Import what an extra brings, or raise `MissingPackage`."""
+    """Turn failed imports of packages of extras into `MissingPackage`."""
     try:
         yield
     except MissingPackage:
@@ -63,14 +63,14 @@ def named_extras() -> Iterator[None]:
 
 
 def on_first_use(package: str, homes: Mapping[str, str], name: str) -> Any:
-    """Return a public name of a package from the module that it lives in, which is imported now.
+    """Return a public name of a package from its module, which is imported now.
 
     Raises
     ------
     AttributeError
         If the package has no such name.
     MissingPackage
-        If the module takes an extra that is not installed.
+        If the module needs an extra that is not installed.
     """
     if name not in homes:
         raise AttributeError(f"module {package!r} has no attribute {name!r}")

@@ -1,4 +1,4 @@
-"""Places of bodies at rest, as contacts and connections tell them."""
+"""Places of bodies at rest, determined from contacts and connections."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Joint:
     Attributes
     ----------
     first, second : BodyPoint
-        The points; the second is None where the first touches a rigid track.
+        The points; the second is None if the first touches a rigid track.
     away : ndarray, shape (3,)
         Offset at rest of the first from the second, or from the origin of the world [m].
     """
@@ -53,22 +53,22 @@ def origins_of(
     offset: Callable[[BodyPoint], Array],
     known: dict[Any, Array],
 ) -> dict[Any, Array]:
-    """Return the places of all things that joints join [m], shape (3,) each.
+    """Return the places of all things connected by joints [m], shape (3,) each.
 
     Parameters
     ----------
     joints : iterator of Joint
-        The joints. Without a known place the first thing touched is at the origin of the world.
+        The joints. Without any known place, the first thing touched is at the origin of the world.
     thing : callable
-        Takes a point and returns the thing that it belongs to: its body, or the point itself.
+        Takes a point and returns the thing to which it belongs: its body, or the point itself.
     offset : callable
         Takes a point and returns its place relative to that of its thing [m], shape (3,).
     known : dict
-        Places that are known beforehand [m].
+        Places known in advance [m].
     """
     found, left = dict(known), list(joints)
     while left:
-        # A group that is joined to nothing placed so far starts where it would be alone.
+        # A group without a joint to a placed thing starts where it would be alone.
         ready = (
             k
             for k, one in enumerate(left)
@@ -88,9 +88,9 @@ def origins_of(
 def origins_in_space(system: Any) -> dict[Any, Array]:
     """Return the world places of the origins of the bodies of a system in space [m], shape (3,) each.
 
-    Bodies that know their places in the world have the origin of the world. What touches them, or is joined to them by
-    springs and dashpots, is beside them, and so on. Where no body knows its place the track of the first contact is at
-    the origin. The keys of bodies that do not know where their points are, are these points.
+    The origin of bodies with places in the world is the origin of the world. Bodies that touch them, or are joined to
+    them by springs and dashpots, are placed beside them, and so on. If no body has a place in the world, the track of
+    the first contact is at the origin. For bodies without places or offsets of their points, the keys are these points.
     """
     joints = list(joints_of(system))
     points = [point for joint in joints for point in (joint.first, joint.second) if point is not None]

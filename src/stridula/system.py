@@ -189,7 +189,7 @@ class System:
                 turning = getattr(point.body, "turning", None)
                 if getattr(turning, "velocity", turning):
                     name = self.body_name(point.body)
-                    raise ArgumentError(f"connections[{number}]", "leave a body that turns", got=f"one to {name}")
+                    raise ArgumentError(f"connections[{number}]", "not act on a body that turns", got=f"one to {name}")
 
     def _check_imposed(self) -> None:
         imposed = self._of_kind(ImposedVelocity)

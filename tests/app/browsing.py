@@ -1,4 +1,4 @@
-"""Pages in a browser, and what they say of themselves."""
+"""Pages in a browser, and the state that they report."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ PLAYS = "window.stridula && stridula.stats.samples > 4800"
 
 
 class Browsing(AbstractContextManager["Browsing"]):
-    """A visitor: pages opened share what the browser remembers, and none may complain."""
+    """A visitor: its pages share the storage of the browser, and none may log errors."""
 
     def __init__(self, chromium: Any, server: Server, **words: Any) -> None:
         self.server, self.complaints = server, []
@@ -21,18 +21,18 @@ class Browsing(AbstractContextManager["Browsing"]):
         self.complains = True
 
     def open(self, hash: str = "", intro: bool = False, map: bool = False) -> Any:
-        """Open the page, its introduction read and its map left out unless asked for, and wait until it plays."""
+        """Open the page, without introduction and, unless requested, without map, and wait until it plays."""
         if not intro:
             self.context.add_init_script("localStorage.setItem('visited', '1')")
         page = self.begin(hash)
         until(page, PLAYS)
         if not map:
-            # A map takes a processor for a while.
+            # A map occupies a processor for a while.
             page.evaluate("document.getElementById('map-on').click()")
         return page
 
     def begin(self, hash: str) -> Any:
-        """Open the page, and listen to what it complains of."""
+        """Open the page, and collect its errors."""
         page = self.context.new_page()
         page.on("console", self._heard)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
@@ -40,7 +40,7 @@ class Browsing(AbstractContextManager["Browsing"]):
         return page
 
     def _heard(self, said: Any) -> None:
-        # A browser that draws by the processor tells of itself how long that takes.
+        # A browser that renders in software logs how long that takes.
         if said.type in ("error", "warning") and STALL not in said.text:
             self.complaints.append(said.text)
 
@@ -51,21 +51,21 @@ class Browsing(AbstractContextManager["Browsing"]):
 
 
 def until(page: Any, true: str, arg: Any = None) -> None:
-    """Wait until an expression in `arg` is true; as a function, for the page lets nobody evaluate texts."""
+    """Wait until an expression in `arg` is true; as a function, since the page forbids evaluating texts."""
     page.wait_for_function(f"(arg) => {true}", arg=arg)
 
 
 def stats(page: Any, name: str) -> Any:
-    """Return a number that the page keeps of itself."""
+    """Return a statistic of the page."""
     return page.evaluate(f"stridula.stats.{name}")
 
 
 def plays_on(page: Any, samples: int = 4800) -> None:
-    """Wait until so many more samples were played."""
+    """Wait until a number of further samples were played."""
     before = stats(page, "samples")
     until(page, f"stridula.stats.samples >= {before + samples}")
 
 
 def shown(page: Any, key: str) -> float:
-    """Return the number that the page shows of a key, in the unit shown."""
+    """Return the number that the page shows for a key, in the unit shown."""
     return float(page.locator(f"input[type=number][data-key='{key}']").input_value())

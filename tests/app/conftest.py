@@ -26,7 +26,7 @@ ARGUMENTS = (
 
 @pytest.fixture(scope="session")
 def server(tmp_path_factory) -> Iterator[Server]:
-    """Serve the page; whatever befell it in between, it has complained of nothing."""
+    """Serve the page; at the end its standard error must be empty."""
     shared = Server(tmp_path_factory.mktemp("server") / "errors")
     yield shared
     shared.stop()
@@ -35,7 +35,7 @@ def server(tmp_path_factory) -> Iterator[Server]:
 
 @pytest.fixture
 def own(tmp_path) -> Iterator[Server]:
-    """Serve the page to one test alone, which may end the server."""
+    """Serve the page to a single test, which may end the server."""
     server = Server(tmp_path / "errors")
     yield server
     server.stop()
@@ -44,7 +44,7 @@ def own(tmp_path) -> Iterator[Server]:
 
 @pytest.fixture
 def talk(server) -> Iterator[Conversation]:
-    """Open a socket that has been greeted."""
+    """Open a socket and receive its greeting."""
     with conversation(server) as opened:
         opened.until("hello")
         yield opened
@@ -67,13 +67,13 @@ def launched(*more: str) -> Iterator[Any]:
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
-    """Start a browser; not for longer than a file of tests, for it keeps a loop of events running."""
+    """Start a browser for one file of tests, since it keeps an event loop running."""
     with launched() as browser:
         yield browser
 
 
 @pytest.fixture
 def browsing(chromium, server) -> Iterator[Browsing]:
-    """Return what opens pages as a visitor of its own does; none of them may have complained."""
+    """Return a visitor that opens pages, none of which may log errors."""
     with Browsing(chromium, server) as opened:
         yield opened

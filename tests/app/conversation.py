@@ -1,4 +1,4 @@
-"""What a page says and hears, without a page."""
+"""Messages between a page and the server, without a page."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MOST_PARTS = 20
 
 @dataclass
 class Part:
-    """A part of what is played, unpacked as `stridula.app.parts.packed` says."""
+    """A part of the stream, unpacked from `stridula.app.parts.packed`."""
 
     revision: int
     clock: float
@@ -38,7 +38,7 @@ class Part:
 
 
 def parts_of(data: bytes) -> list[Part]:
-    """Return the parts that lie one after the other in an answer."""
+    """Return the successive parts in an answer."""
     found, at = [], 0
     while at < len(data):
         samples, seen, nodes, points, contacts = (int(number) for number in np.frombuffer(data, "<f8", 5, at + 24))
@@ -66,7 +66,7 @@ def unpacked(data: bytes) -> Part:
 
 @dataclass
 class Played:
-    """Parts, and what ended strokes."""
+    """Parts, and the reasons why strokes ended."""
 
     parts: list[Part] = field(default_factory=list)
     stops: list[dict[str, Any]] = field(default_factory=list)
@@ -83,7 +83,7 @@ class Played:
 
 
 class Conversation:
-    """An open socket; `others` keeps what was said in between."""
+    """An open socket; `others` keeps messages that were not waited for."""
 
     def __init__(self, socket: Any) -> None:
         self.socket, self.revision = socket, 0
@@ -125,7 +125,7 @@ class Conversation:
         return answer
 
     def play(self, samples: int, each: int = 480) -> Played:
-        """Play on, in parts of so many samples."""
+        """Continue, in parts of a number of samples."""
         played, before = Played(), self.others
         while samples:
             size = min(each, samples)
@@ -135,7 +135,7 @@ class Conversation:
             found = parts_of(self.bytes())
             played.parts += found
             played.stops += [one for one in self.others if isinstance(one, dict) and one["type"] == "stroke"]
-            # Of what is slow not all comes at once, of what has ended nothing.
+            # A slow system sends less at once, an ended one nothing.
             samples -= sum(len(part.sound) for part in found) or parts * size
         self.others = before
         return played

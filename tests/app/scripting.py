@@ -1,4 +1,4 @@
-"""The page's own scripts without a browser, in the node that comes with playwright."""
+"""The page's scripts without a browser, in the node that comes with playwright."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .serving import WAIT
 
 
 def result_of(folder: Path, code: str, given: Any = None) -> Any:
-    """Return the value of `result` after a module has run, to which `given` is what the test gives.
+    """Return the value of `result` after a module has run with `given` from the test.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ def result_of(folder: Path, code: str, given: Any = None) -> Any:
     code : str
         The module.
     given : anything that JSON holds, optional
-        What `given` is in it.
+        Value of `given` in the module.
     """
     with as_file(files("stridula.app").joinpath("page")) as page:
         shutil.copytree(page, folder, dirs_exist_ok=True)

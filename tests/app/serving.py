@@ -1,4 +1,4 @@
-"""A server of the page as a process of its own."""
+"""A server of the page in a separate process."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from typing import Any
 
 from stridula.app.serve import COMPILING
 
-# What takes longer has failed [s]: a loaded machine is slow, a first start and a first map compile.
+# Time limit [s]: a loaded machine is slow, a first start and a first map compile.
 WAIT, START = 120.0, 300.0
 COMMAND = (sys.executable, "-c", "from stridula.cli import main; main()", "app", "--no-browser")
 
 
 class Server:
-    """`stridula app` on a free port, or on one that is given; with more arguments and in its environment, if asked."""
+    """`stridula app` on a free or given port, with further arguments and environment if given."""
 
     def __init__(self, errors: Path, port: int = 0, arguments: Sequence[str] = (), **environment: str) -> None:
         self.errors = errors
@@ -45,17 +45,17 @@ class Server:
 
     @property
     def origin(self) -> str:
-        """What the browser calls where its pages come from."""
+        """Origin of its pages."""
         return self.address.rstrip("/")
 
     @property
     def said(self) -> str:
-        """What it wrote to standard error."""
+        """Its standard error."""
         return self.errors.read_text(encoding="utf-8")
 
     @property
     def complaints(self) -> str:
-        """The same but for the notice of a start that compiles: nothing, if all is well."""
+        """The same without the notice of compilation: empty if all is well."""
         return self.said.replace(f"{COMPILING}\n", "")
 
     def get(self, path: str, **headers: str) -> tuple[HTTPResponse, bytes]:
@@ -69,7 +69,7 @@ class Server:
             connection.close()
 
     def stop(self) -> None:
-        """End it as one does who has finished."""
+        """End it in the regular way."""
         self.process.terminate()
         self._wait()
 
@@ -90,14 +90,14 @@ class Server:
 
 
 def app(*arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run `stridula app` where it cannot serve."""
+    """Run `stridula app` in a case in which it cannot serve."""
     return subprocess.run(
         [*COMMAND, *arguments], capture_output=True, text=True, timeout=START, env=os.environ, check=False
     )
 
 
 def eventually(found: Callable[[], Any], what: str, wait: float = WAIT) -> Any:
-    """Return what is found once it is true."""
+    """Return a result once it is true."""
     end = time.monotonic() + wait
     while not (value := found()):
         assert time.monotonic() < end, f"{what} did not come about in {wait} s"

@@ -34,7 +34,7 @@ def test_there_are_never_more_ticks_than_fit(tmp_path):
         assert len(found) <= most + 1
         rounding = 1e-6 * (abs(low) + abs(high))
         assert all(low - rounding <= tick <= high + rounding for tick in found)
-        # Never so few that one cannot read it: the next closer steps would be at most two and a half times as close.
+        # Never too few: the next smaller step would be at most two and a half times as small.
         assert len(found) >= np.floor(most / 2.5) or high - low < 1e-9 * abs(low)
 
 

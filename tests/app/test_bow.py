@@ -1,4 +1,4 @@
-"""What a hand on the picture plays, without a page."""
+"""Dragging on the picture, without a page."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def moved(folder, what, values, path):
     return result_of(folder, HAND, {"what": {"velocity": None, "force": None} | what, "values": values, "path": path})
 
 
-def test_each_case_offers_what_it_has_to_a_hand(tmp_path):
+def test_each_case_offers_its_values_for_dragging(tmp_path):
     turned = {name: playable(name, None, {}).turned for name in CASES}
     given = [[one.described["controls"], one.values] for one in turned.values()]
     found = dict(zip(turned, result_of(tmp_path, PLAYED, given), strict=True))
@@ -71,13 +71,13 @@ def test_each_case_offers_what_it_has_to_a_hand(tmp_path):
         assert set(keys) - {None} <= set(turned[name].values)
 
 
-def test_a_hand_at_a_steady_speed_draws_at_one(tmp_path):
-    # Half a width a second, to the right and back.
+def test_dragging_at_a_steady_speed_gives_a_steady_velocity(tmp_path):
+    # Half a width per second, to the right and back.
     path = [[0.2 + 0.5 * TICK * k, 0.5] for k in range(15)] + [[0.55 - 0.5 * TICK * k, 0.5] for k in range(15)]
     found = [one["speed"] for one in moved(tmp_path, {"velocity": BOTH_WAYS}, {}, path)]
     assert found[13] == pytest.approx(0.05, rel=0.01)
     assert found[-1] == pytest.approx(-0.05, rel=0.01)
-    # What only goes one way goes it whichever way the hand moves, and never stops.
+    # A value with one sign keeps it for both directions of the hand, and never becomes zero.
     found = [one["speed"] for one in moved(tmp_path, {"velocity": ONE_WAY}, {}, path)]
     assert found[13] == found[-1] == pytest.approx(-0.5, rel=0.01)
     assert max(found) <= -0.04
@@ -125,7 +125,7 @@ def test_a_hand_lets_go_before_something_else_is_played(tmp_path, leaves, case, 
         assert found["other"]["overrides"] == {}
 
 
-def test_forces_are_known_by_their_unit(tmp_path):
+def test_forces_are_recognised_by_their_unit(tmp_path):
     units = ["mN", "MN", "µN", "N", "N/m", "Nm", "mm"]
     given = [[[LOAD | {"key": "drives.0.load", "unit": unit}], {"drives.0.load": 1.0}] for unit in units]
     assert [force is not None for _, force in result_of(tmp_path, PLAYED, given)] == [True] * 4 + [False] * 3

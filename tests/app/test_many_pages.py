@@ -1,4 +1,4 @@
-"""Many pages: how many, how fast, and what is left of them: nothing."""
+"""Many pages: their number, their speed, and the release of their memory."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .conversation import RATE, conversation, parts_of
 from .serving import eventually
 
 MOST_PAGES, AHEAD, FASTEST = 16, 1.0, 1.5
-# What a hundred pages may leave in memory, once memory is as the first of them left it [bytes].
+# Growth of memory allowed for a hundred pages, after the first of them [bytes].
 GROWTH = 30e6
 WARM_UP, SESSIONS = 30, 100
 SIDES = {
@@ -23,7 +23,7 @@ SIDES = {
 }
 
 
-def test_sixteen_pages_at_most_until_one_goes(own):
+def test_at_most_sixteen_pages_until_one_closes(own):
     with contextlib.ExitStack() as stack:
         pages = [stack.enter_context(conversation(own)) for _ in range(MOST_PAGES)]
         for page in pages:
@@ -32,7 +32,7 @@ def test_sixteen_pages_at_most_until_one_goes(own):
         with conversation(own) as one_more, pytest.raises(ConnectionClosed) as refused:
             one_more.hear()
         assert (refused.value.rcvd.code, refused.value.rcvd.reason) == (4429, "at most 16 pages can be open")
-        # Those that are there play on.
+        # Open pages continue.
         pages[0].scene()
         assert len(pages[0].play(480).sound) == 480
         pages[-1].socket.close()
@@ -45,11 +45,11 @@ def test_sixteen_pages_at_most_until_one_goes(own):
         eventually(has_room, "room for another page")
 
 
-def test_sessions_that_are_dropped_leave_nothing(own):
+def test_dropped_sessions_leave_nothing_behind(own):
     process = psutil.Process(own.process.pid)
 
     def drop(number: int) -> None:
-        """Open a page and let it go in the middle of something."""
+        """Open a page and close it during an operation."""
         with conversation(own, close_timeout=0.0 if number % 2 else 1.0) as talk:
             talk.until("hello")
             if number % 4:
@@ -61,7 +61,7 @@ def test_sessions_that_are_dropped_leave_nothing(own):
                 talk.say("map", points=4, **SIDES)
 
     with conversation(own) as first:
-        # A page that stays keeps the process of maps, for which those that go have left rows to compute.
+        # An open page keeps the process of maps, which still has rows of closed pages to compute.
         first.until("hello")
         first.scene()
         first.say("map", points=4, **SIDES)
@@ -74,7 +74,7 @@ def test_sessions_that_are_dropped_leave_nothing(own):
         assert len(process.children()) == 1
     eventually(lambda: not process.children(), "an end of the process of maps")
     assert process.memory_info().rss < before + GROWTH
-    # Nothing is left that begins it again.
+    # Nothing starts it again.
     with conversation(own) as last:
         last.until("hello")
         last.scene()
@@ -82,7 +82,7 @@ def test_sessions_that_are_dropped_leave_nothing(own):
     assert not process.children()
 
 
-def test_rows_that_nobody_waits_for_begin_no_process(own):
+def test_unwanted_rows_start_no_process(own):
     process = psutil.Process(own.process.pid)
     with contextlib.ExitStack() as stack:
         pages = [stack.enter_context(conversation(own)) for _ in range(4)]
@@ -93,7 +93,7 @@ def test_rows_that_nobody_waits_for_begin_no_process(own):
         pages[0].until("map row")
         assert len(process.children()) == 1
     eventually(lambda: not process.children(), "an end of the process of maps")
-    # Whoever was still in the queue had its turn by now.
+    # By now the queue is empty.
     with conversation(own) as page:
         page.until("hello")
         page.scene()
@@ -102,14 +102,14 @@ def test_rows_that_nobody_waits_for_begin_no_process(own):
         assert not process.children()
 
 
-def test_no_page_plays_faster_than_time_goes_by_more_than_half(own):
+def test_no_page_runs_faster_than_real_time_by_more_than_half(own):
     seconds = 3
     with conversation(own) as talk:
         began = time.monotonic()
         talk.until("hello")
         talk.scene()
         pulls = seconds * RATE // 9600
-        # All at once: whoever does not wait for answers is not answered sooner.
+        # All at once: not waiting for answers does not speed them up.
         for _ in range(pulls):
             talk.socket.send(json.dumps({"type": "pull", "parts": 20, "samples": 480}))
         parts = [part for _ in range(pulls) for part in parts_of(talk.bytes())]

@@ -1,4 +1,4 @@
-"""Maps of regimes around what is played."""
+"""Maps of regimes around the played scenario."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def rows_of(talk: Conversation, **words) -> dict[int, list[str]]:
     return {row["row"]: row["regimes"] for row in rows}
 
 
-def test_a_map_has_every_row_and_says_what_a_sweep_says(talk):
+def test_a_map_has_every_row_and_agrees_with_a_sweep(talk):
     talk.scene("squeal")
     rows = rows_of(talk, x=ACROSS, y=UP, points=4)
     assert sorted(rows) == [0, 1, 2, 3]
@@ -49,7 +49,7 @@ def test_a_map_has_every_row_and_says_what_a_sweep_says(talk):
         assert rows[row] == [str(word) for word in swept.regime.values]
 
 
-def test_what_is_played_goes_on_beside_a_map_and_a_new_one_takes_its_place(talk):
+def test_playing_continues_beside_a_map_and_a_new_map_replaces_it(talk):
     talk.scene("squeal")
     talk.say("map", x=ACROSS, y=UP, points=12)
     assert len(talk.play(480).sound) == 480
@@ -59,20 +59,20 @@ def test_what_is_played_goes_on_beside_a_map_and_a_new_one_takes_its_place(talk)
     assert {len(row) for row in rows.values()} == {2}
 
 
-def test_a_map_that_is_not_wanted_any_more_stops(talk):
+def test_an_unwanted_map_stops(talk):
     talk.scene("squeal")
     talk.say("map", x=ACROSS, y=UP, points=12)
     talk.until("map row")
     talk.say("no map")
     talk.play(480)
     talk.others.clear()
-    # The map that comes after it is the only one.
+    # Only the later map is sent.
     rows = rows_of(talk, x=ACROSS, y=UP, points=2)
     assert len(rows) == 2
 
 
 @pytest.mark.parametrize("turns", range(4))
-def test_a_map_given_up_as_it_begins_begins_no_process(turns):
+def test_a_map_cancelled_at_its_start_starts_no_process(turns):
     played = playable("squeal", None, {})
     wanted = Map.model_validate({"type": "map", "x": ACROSS, "y": UP, "points": 2})
 
@@ -96,7 +96,7 @@ def test_a_map_given_up_as_it_begins_begins_no_process(turns):
     assert psutil.Process().children() == before
 
 
-def test_where_nothing_can_be_built_a_map_is_empty(talk):
+def test_a_map_without_valid_systems_is_empty(talk):
     talk.scene("squeal")
     rows = rows_of(talk, x={"key": "slider.length", "low": -1.0, "high": -0.5}, y=UP, points=2)
     assert rows == {0: ["", ""], 1: ["", ""]}
@@ -114,7 +114,7 @@ def test_where_nothing_can_be_built_a_map_is_empty(talk):
         ({"key": FRICTION, "low": 0.0, "high": 1e300}, "map.x.high"),
     ],
 )
-def test_a_side_that_is_none_is_refused(talk, x, named):
+def test_bad_sides_of_a_map_are_refused(talk, x, named):
     talk.scene("squeal")
     talk.say("map", x=x, y=UP, points=4)
     (problem,) = talk.until("problem", "map row", "map done")["problems"]
@@ -123,14 +123,14 @@ def test_a_side_that_is_none_is_refused(talk, x, named):
 
 
 @pytest.mark.parametrize("points", [1, 25, 10_000_000])
-def test_a_map_has_its_bounds(talk, points):
+def test_the_size_of_a_map_is_limited(talk, points):
     talk.scene("squeal")
     talk.say("map", x=ACROSS, y=UP, points=points)
     (problem,) = talk.until("problem", "map row", "map done")["problems"]
     assert problem.startswith("map.points must be")
 
 
-def test_two_sides_are_not_the_same(talk):
+def test_equal_sides_of_a_map_are_refused(talk):
     talk.scene("squeal")
     talk.say("map", x=ACROSS, y=ACROSS, points=2)
     assert talk.until("problem", "map done")["type"] == "problem"

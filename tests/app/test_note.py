@@ -44,11 +44,11 @@ def test_a_tone_belongs_to_the_nearest_mode_within_five_percent(tmp_path):
 
 
 @pytest.mark.parametrize("none", [0, None, -3.0])
-def test_what_has_no_tone_has_no_note(tmp_path, none):
+def test_no_tone_means_no_note(tmp_path, none):
     assert result_of(tmp_path, READING, [[none, [100.0]]]) == [""]
 
 
-def test_it_reads_as_a_line(tmp_path):
+def test_the_note_is_written_in_one_line(tmp_path):
     given = [[440.0, []], [2950.0, []], [2980.0, [2930.0]], [322.0, [320.0]]]
     assert result_of(tmp_path, READING, given) == [
         "A4",

@@ -1,4 +1,4 @@
-"""The page in a browser: it plays, sounds, draws, and takes what one gives it."""
+"""The page in a browser: motion, sound, drawings and input."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ GOOD = 'base = "stable-sliding"\ntitle = "Mine"\n[slider]\nlength = 0.45\n[conta
 
 
 def slide(page, value: float, where: str = SLIDE) -> None:
-    """Move a slider as a hand does."""
+    """Move a slider as a user does."""
     page.locator(where).evaluate(
         "(one, value) => { one.value = value; for (const type of ['input', 'change'])"
         " one.dispatchEvent(new Event(type, { bubbles: true })); }",
@@ -30,7 +30,7 @@ def slide(page, value: float, where: str = SLIDE) -> None:
 
 
 def told(page, words: str) -> None:
-    """Wait until the page plays something whose scenario holds some words."""
+    """Wait until the page plays a scenario whose text contains some words."""
     until(page, "stridula.now()?.toml.includes(arg)", words)
 
 
@@ -94,7 +94,7 @@ def test_it_is_muted_until_sound_is_turned_on(browsing):
     sound.click()
     assert sound.get_attribute("aria-pressed") == "true"
     until(page, "contexts.length === 1 && contexts[0].state === 'running'")
-    # The player feeds what is played from now on, and something sounds below full scale.
+    # The player receives samples from now on, and the sound is below full scale.
     plays_on(page, RATE // 2)
     until(page, "stridula.stats.peak > 1e-4")
     assert stats(page, "peak") < 0.71
@@ -108,7 +108,7 @@ def test_it_is_muted_until_sound_is_turned_on(browsing):
     plays_on(page)
 
 
-def test_the_level_follows_what_is_heard_and_says_what_full_scale_is(browsing):
+def test_the_level_follows_the_sound_and_states_its_full_scale(browsing):
     page = browsing.open("#case=strong-pressure")
     words = page.locator("#level-out")
     assert words.text_content() == "muted"
@@ -148,7 +148,7 @@ def test_more_friction_changes_the_ribbon_within_a_second_of_time_played(browsin
     until(page, "document.getElementById('shares').textContent.includes('sticking')")
 
 
-def test_every_control_says_its_unit_and_what_it_does(browsing):
+def test_every_control_has_its_unit_and_a_description(browsing):
     page = browsing.open()
     rows = page.locator("#controls .control:not([hidden])")
     assert rows.count() > 8
@@ -157,7 +157,7 @@ def test_every_control_says_its_unit_and_what_it_does(browsing):
         assert words.text_content().endswith(".")
         for one in row.locator("input, select").all():
             assert one.get_attribute("aria-describedby") == words.get_attribute("id")
-    # What a case does not have is hidden.
+    # Controls that a case does not have are hidden.
     assert page.locator("[data-key='drives.0.velocity']").first.is_hidden()
     page.locator("#drives-0-kind").select_option("imposed velocity")
     page.locator("input[type=number][data-key='drives.0.velocity']").wait_for(state="visible")
@@ -165,7 +165,7 @@ def test_every_control_says_its_unit_and_what_it_does(browsing):
     plays_on(page)
 
 
-def test_a_bad_file_is_told_and_all_plays_on(browsing, tmp_path):
+def test_a_bad_file_is_reported_and_playing_continues(browsing, tmp_path):
     page = browsing.open()
     told(page, "coefficient = 1.5")
     page.locator("#scenario summary").click()
@@ -179,13 +179,13 @@ def test_a_bad_file_is_told_and_all_plays_on(browsing, tmp_path):
     assert alert.get_attribute("role") == "alert"
     plays_on(page)
     assert "coefficient = 1.5" in page.evaluate("stridula.now().toml")
-    # What is good again takes the message away.
+    # A valid value removes the message.
     upload(page, GOOD)
     alert.wait_for(state="hidden")
     told(page, "length = 0.45")
 
 
-def test_a_file_of_ones_own_plays_and_its_link_plays_the_same(browsing):
+def test_a_user_file_plays_and_its_link_plays_the_same(browsing):
     page = browsing.open()
     upload(page, GOOD)
     told(page, "length = 0.45")
@@ -217,12 +217,12 @@ def test_a_link_holds_case_and_changes(browsing):
     assert other.evaluate("stridula.now().toml") == page.evaluate("stridula.now().toml")
     assert other.locator("#case").input_value() == "judder"
     assert shown(other, "slider.angle") == 50.0
-    # In the same page a link is followed, too.
+    # A link also works within the same page.
     other.evaluate("location.hash = '#case=stable-sliding'")
     told(other, "coefficient = 0.5")
 
 
-def test_a_link_that_is_none_is_told(browsing):
+def test_an_invalid_link_is_reported(browsing):
     page = browsing.open("#text=%21%21%21")
     assert page.locator("#problem").is_visible()
     assert "link cannot be read" in page.locator("#problem").text_content()
@@ -261,7 +261,7 @@ def test_slow_motion_steps_and_pauses(browsing):
     assert step.is_disabled()
     play.click()
     assert play.text_content() == "Play"
-    # What was asked for before still comes.
+    # Samples requested before still arrive.
     page.wait_for_timeout(500)
     before = stats(page, "samples")
     page.wait_for_timeout(700)
@@ -276,7 +276,7 @@ def test_slow_motion_steps_and_pauses(browsing):
     plays_on(page, 8)
     page.locator("#speed").select_option("100")
     plays_on(page, 40)
-    # Slow it is: a second of time would be more than was played.
+    # Slow motion: less than a second of time was played.
     assert stats(page, "samples") < before + RATE
     page.locator("#speed").select_option("1")
     plays_on(page)
@@ -319,7 +319,7 @@ def test_other_sources_are_heard(browsing):
     assert soundfile.info(saved.value.path()).samplerate == RATE
 
 
-def test_the_map_comes_and_leads(browsing):
+def test_the_map_appears_and_sets_values(browsing):
     page = browsing.open(map=True)
     until(page, "document.getElementById('map-words').textContent.includes('computed')")
     box = page.locator("#map").bounding_box()

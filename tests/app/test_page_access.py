@@ -1,4 +1,4 @@
-"""The page for everybody: by keyboard, on a phone, dark and light, read aloud."""
+"""Accessibility of the page: keyboard, phone, dark and light themes, screen readers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SEEN = f"""() => [...document.querySelectorAll('{REACHED}')].filter((one) =>
 
 
 def grave(page) -> list[str]:
-    """Return what axe calls serious or critical, with where it is."""
+    """Return the problems that axe calls serious or critical, with their places."""
     found = AXE.run(page).response
     return [
         f"{one['id']}: {node['target']} {node['failureSummary']}"
@@ -28,17 +28,17 @@ def grave(page) -> list[str]:
 
 @pytest.fixture(params=["light", "dark", "phone"])
 def shown(request, chromium, server):
-    """Open the page as different people see it."""
+    """Open the page with different settings of the browser."""
     words = {"color_scheme": "dark"} if request.param == "dark" else PHONE if request.param == "phone" else {}
     with Browsing(chromium, server, bypass_csp=True, **words) as browsing:
         yield browsing
 
 
-def test_axe_finds_nothing_grave(shown):
+def test_axe_finds_no_serious_problem(shown):
     page = shown.open()
     page.locator("#scenario summary").click()
     assert grave(page) == []
-    # Nor while it says what is wrong, with a button that is disabled in sight.
+    # Nor while it shows an error, with a disabled button visible.
     page.locator("#toml").fill("no TOML")
     page.locator("#toml-apply").click()
     page.locator("#problem").wait_for(state="visible")
@@ -46,7 +46,7 @@ def test_axe_finds_nothing_grave(shown):
     assert grave(page) == []
 
 
-def test_axe_finds_nothing_grave_in_a_system_on_tour_and_among_instruments(shown):
+def test_axe_finds_no_serious_problem_in_a_system_on_tour_and_among_instruments(shown):
     page = shown.open("#case=violin")
     assert grave(page) == []
     page.locator("#record").click()
@@ -61,13 +61,13 @@ def test_axe_finds_nothing_grave_in_a_system_on_tour_and_among_instruments(shown
     assert grave(page) == []
 
 
-def test_axe_finds_nothing_grave_in_the_introduction(shown):
+def test_axe_finds_no_serious_problem_in_the_introduction(shown):
     page = shown.open(intro=True)
     assert page.locator("#intro").is_visible()
     assert grave(page) == []
 
 
-def test_axe_would_find_what_is_grave(chromium, server):
+def test_axe_finds_a_serious_problem(chromium, server):
     with Browsing(chromium, server, bypass_csp=True) as browsing:
         page = browsing.open()
         page.evaluate("document.getElementById('play').textContent = ''")
@@ -75,7 +75,7 @@ def test_axe_would_find_what_is_grave(chromium, server):
         assert {line.partition(":")[0] for line in grave(page)} >= {"button-name", "color-contrast"}
 
 
-def test_the_theme_follows_the_system_until_one_chooses(chromium, server):
+def test_the_theme_follows_the_system_until_it_is_chosen(chromium, server):
     with Browsing(chromium, server, color_scheme="dark") as browsing:
         page = browsing.open()
         theme = "document.documentElement.dataset.theme"
@@ -95,7 +95,7 @@ def test_a_phone_need_not_scroll_sideways(chromium, server, intro):
             page.locator("#scenario summary").click()
         width = "document.documentElement"
         assert page.evaluate(f"{width}.scrollWidth") <= page.evaluate(f"{width}.clientWidth") == 390
-        # Nor is anything cut off: all that one sees lies within.
+        # Nothing is cut off: all visible elements lie within.
         assert page.evaluate(f"({SEEN})().filter((one) => one.getBoundingClientRect().right > 390.5).length") == 0
 
 
@@ -112,7 +112,7 @@ def test_all_frames_are_as_wide_as_the_page(chromium, server, width):
         (_, sound), (left, right), (first, last) = edges
         assert sound == pytest.approx(right, abs=0.5)
         assert last - right == pytest.approx(left - first, abs=0.5)
-        # The beams are in sight at once.
+        # The beams are visible at once.
         if width >= 1360:
             assert page.locator("#beams").bounding_box()["y"] < 240
 
@@ -139,7 +139,7 @@ def test_the_keyboard_reaches_everything(browsing):
         )
     name = "(one) => one.id || one.dataset.key || one.textContent"
     assert page.evaluate(f"wanted.filter((one) => !reached.has(one)).map({name})") == []
-    # Where one is can be seen.
+    # The focus is visible.
     assert page.evaluate("unseen") == []
 
 
@@ -151,7 +151,7 @@ def test_space_pauses_where_nothing_else_takes_it(browsing):
     page.keyboard.press("Space")
     assert play.text_content() == "Pause"
     plays_on(page)
-    # A slider that was dragged has no use for it, but the keys of a slider.
+    # A dragged slider does not use the space key, but it uses the keys of a slider.
     for slide in ("#contact-friction-coefficient-slide", "#volume"):
         before = page.locator(slide).input_value()
         page.locator(slide).click(position={"x": 20, "y": 8})
@@ -196,7 +196,7 @@ def test_arrow_keys_move_the_cross_hair(browsing):
     plays_on(page)
 
 
-def test_changes_are_said_to_who_does_not_see(browsing):
+def test_changes_are_announced_to_screen_readers(browsing):
     page = browsing.open()
     assert page.locator("#said").get_attribute("aria-live") == "polite"
     page.locator("#link").click()

@@ -11,9 +11,9 @@ from .serving import Server
 FRICTION = "contact.friction.coefficient"
 
 
-def test_the_page_comes_back_with_its_server_and_plays_on_as_it_was(chromium, own, tmp_path):
+def test_the_page_reconnects_and_continues_unchanged(chromium, own, tmp_path):
     with Browsing(chromium, own) as browsing:
-        # A socket that finds no server complains; so it shall here.
+        # A socket without server logs an error, as expected here.
         browsing.complains = False
         page = browsing.open(f"#case=stable-sliding&{FRICTION}=0.62")
         until(page, "stridula.now()?.toml.includes('coefficient = 0.62')")
@@ -36,7 +36,7 @@ def test_the_page_comes_back_with_its_server_and_plays_on_as_it_was(chromium, ow
         assert again.complaints == ""
 
 
-def test_a_page_too_many_says_so_and_plays_when_there_is_room(chromium, own):
+def test_an_excess_page_waits_until_there_is_room(chromium, own):
     with ExitStack() as stack, Browsing(chromium, own) as browsing:
         browsing.complains = False
         pages = [stack.enter_context(conversation(own)) for _ in range(16)]

@@ -1,4 +1,4 @@
-"""Systems in space in a browser: they are drawn, one goes round them, and what is slow is heard over and over."""
+"""Systems in space in a browser: drawing, turning the view, and looped sound of slow systems."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LOADED = "performance.getEntriesByType('resource').filter(({ name }) => name.inc
 
 @pytest.fixture(scope="module")
 def chromium():
-    """Start a browser that draws in space by the processor."""
+    """Start a browser with software rendering."""
     with launched(*SOFTWARE) as browser:
         yield browser
 
@@ -39,7 +39,7 @@ def opened(browsing, case: str = CASE):
 
 
 def seen(page) -> np.ndarray:
-    """Return the picture in space as it is seen, colours of pixels."""
+    """Return the visible picture in space as colours of pixels."""
     page.evaluate("stridula.space.again()")
     return imread(io.BytesIO(page.locator("#space").screenshot()))[..., :3]
 
@@ -57,7 +57,7 @@ def test_a_system_in_space_is_drawn_with_its_contacts(browsing):
     page.locator("#play").click()
     picture = seen(page)
     assert len(np.unique((255 * picture).astype(int).reshape(-1, 3), axis=0)) > 200
-    # The disc is there, lit: much of it is light where the panel is white, too, so that shaded sides tell.
+    # The lit disc is visible: much of it is as light as the panel, so its shaded sides are tested.
     assert ((picture.max(axis=2) < 0.9) & (picture.min(axis=2) > 0.4)).mean() > 0.01
     states = page.evaluate("Array.from(stridula.space.dots.geometry.attributes.color.array)")
     assert len(states) == 15
@@ -65,7 +65,7 @@ def test_a_system_in_space_is_drawn_with_its_contacts(browsing):
     assert sum(share_of(picture, colour) for colour in colours.values()) > 1e-4
 
 
-def test_one_goes_round_it_by_keys_and_mouse(browsing):
+def test_the_view_turns_by_keys_and_mouse(browsing):
     page = opened(browsing)
     page.locator("#play").click()
     canvas = page.locator("#space")
@@ -78,7 +78,7 @@ def test_one_goes_round_it_by_keys_and_mouse(browsing):
         different.append(float(np.abs(seen(page) - first).mean()))
     assert min(different[:3]) > 1e-3
     assert different[-1] < 0.01 * min(different[:3])
-    # What moves the eye moves nothing else.
+    # Turning the view moves nothing else.
     assert page.locator("#play").text_content() == "Play"
     box = canvas.bounding_box()
     page.mouse.move(box["x"] + 100, box["y"] + 100)
@@ -106,7 +106,7 @@ TURNED = """async ([azimuth, others]) => {
 }"""
 
 
-def test_the_eye_stays_while_the_same_bodies_are_turned(browsing):
+def test_the_view_stays_while_values_of_the_same_bodies_change(browsing):
     page = opened(browsing)
     page.locator("#play").click()
     before, after = page.evaluate(TURNED, [0.3, False])
@@ -116,13 +116,13 @@ def test_the_eye_stays_while_the_same_bodies_are_turned(browsing):
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_axe_finds_nothing_grave_in_space(chromium, server, scheme):
+def test_axe_finds_no_serious_problem_in_space(chromium, server, scheme):
     with Browsing(chromium, server, bypass_csp=True, color_scheme=scheme) as browsing:
         page = opened(browsing)
         assert grave(page) == []
 
 
-def test_only_what_is_in_space_takes_what_draws_there(browsing):
+def test_only_systems_in_space_load_the_drawing_in_space(browsing):
     page = browsing.open("#case=belt")
     assert page.evaluate(LOADED) == 0
     assert page.locator("#space").is_hidden()
@@ -135,7 +135,7 @@ def test_only_what_is_in_space_takes_what_draws_there(browsing):
     assert page.locator("#space-legend").is_hidden()
 
 
-def test_what_is_slow_is_heard_over_and_over_and_has_no_map_unless_one_asks(browsing):
+def test_slow_systems_loop_and_have_no_map_unless_requested(browsing):
     page = opened(browsing, "#case=pad-on-disc")
     assert page.locator("#map-on").is_checked() is False
     assert page.locator("#map-words").text_content() == "computed only on request: this system is slow"
@@ -154,7 +154,7 @@ def test_what_is_slow_is_heard_over_and_over_and_has_no_map_unless_one_asks(brow
     assert page.locator("#map-on").is_checked()
 
 
-def test_a_browser_that_draws_nothing_in_space_says_so_and_plays(browsing):
+def test_a_browser_without_drawing_in_space_reports_it_and_plays(browsing):
     browsing.context.add_init_script(
         """const original = HTMLCanvasElement.prototype.getContext;
         HTMLCanvasElement.prototype.getContext = function (kind, ...words) {

@@ -1,4 +1,4 @@
-"""What is drawn, without a page."""
+"""Drawings of the page, without a page."""
 
 from __future__ import annotations
 
@@ -54,21 +54,21 @@ result = given.values.map((values) => {
   const much = frame.follow(lines, scene);
   return [much, frame.extent, scene.contacts.map((one) => mark(one, lines, much))];
 });"""
-# A word of so many pixels over a tip at this height.
+# Width of a word in pixels, over a tip at this height.
 WORD, TIP, WIDTH = 60.0, 200.0, 700.0
 
 
 @pytest.mark.parametrize("pictures", [15, 30])
-def test_the_axis_of_the_force_comes_down_within_two_seconds_after_a_loud_case(tmp_path, pictures):
+def test_the_axis_of_the_force_shrinks_within_two_seconds_after_a_loud_case(tmp_path, pictures):
     times = [1000.0 * k / pictures for k in range(6 * pictures)]
-    # What is seen is the last second.
+    # The last second is visible.
     seen = [79.0 if now < 3000.0 else 10.0 for now in times]
     tops = result_of(tmp_path, TOP, list(zip(seen, times, strict=True)))
     assert all(top >= 1.05 * force for top, force in zip(tops, seen, strict=True))
     assert tops[2 * pictures] == pytest.approx(1.05 * 79.0)
     # It was loud until 2 s.
     assert tops[4 * pictures] < 1.1 * 10.5
-    # An axis that jumps down could not be read.
+    # The axis must not jump.
     assert tops[3 * pictures + 1] > 50.0
 
 
@@ -87,7 +87,7 @@ def test_lines_travel_to_scale_and_depart_exaggerated(tmp_path):
     beam = {"places": [[0.0, 0.0], [1.0, 0.0]], "count": 2}
     block = {"places": [[0.25, 0.0]], "count": 1}
     contacts = [{"tip": [1, 0], "touched": None}]
-    # Travel of each line, then what departs from it.
+    # Travel of each line, then the departures from it.
     still, moved = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 1e-4, 0.5, 0, 0, -2e-4]
     given = {"lines": [beam, block], "contacts": contacts, "values": [still, moved, moved]}
     (rest, first, second) = result_of(tmp_path, LINES, given)
@@ -100,7 +100,7 @@ def test_lines_travel_to_scale_and_depart_exaggerated(tmp_path):
     assert second == first
 
 
-def test_what_vibrates_less_is_drawn_larger_only_slowly(tmp_path):
+def test_the_scale_of_smaller_vibrations_grows_slowly(tmp_path):
     beam = {"places": [[0.0, 0.0], [1.0, 0.0]], "count": 2}
     values = [[0, 0, 0, 0, 0, size] for size in (1e-4, 1e-5, 1e-3)]
     loud, quiet, louder = (
@@ -110,14 +110,14 @@ def test_what_vibrates_less_is_drawn_larger_only_slowly(tmp_path):
     assert louder == pytest.approx(0.06 / 1e-3)
 
 
-def test_a_spectrogram_keeps_a_while_and_nothing_of_what_was_heard_before(tmp_path):
+def test_a_spectrogram_keeps_a_while_and_drops_earlier_sound(tmp_path):
     found = result_of(tmp_path, ANEW)
     assert 2000 <= found["kept"] <= 4000
     assert found["tone"] == pytest.approx(48_000.0 / math.tau, abs=1.0)
     assert found["after"] == [0, None, 1e-9]
 
 
-def test_a_server_that_began_anew_begins_the_history(tmp_path):
+def test_a_restarted_server_restarts_the_history(tmp_path):
     assert result_of(tmp_path, TIMES, [50.0, 50.2, 0.2, 0.4]) == [[2, 2], [4, 4], [2, 2], [4, 4]]
 
 

@@ -1,4 +1,4 @@
-"""What the player makes of what is played: a level at which the limiter rests; without a browser."""
+"""Levelling of the player, at which its limiter is inactive; without a browser."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .scripting import result_of
 
 CEILING = 0.7
 BLOCK = 4800
-# Of each tenth of a second: the loudest that sounds, and the most that the limiter takes away [dB].
+# For each tenth of a second: the largest output and the largest reduction by the limiter [dB].
 PLAYER = """import { Voice } from "./player.js";
 result = given.map(({ levelled, sound }) => {
   const voice = new Voice(48000, (said) => "peak" in said && reductions.push(said.reduction));
@@ -45,20 +45,20 @@ def tone(amplitude: float, seconds: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("amplitude", [0.03, 0.3, 3.0, 80.0])
-def test_what_is_levelled_is_as_loud_whatever_it_is(tmp_path, amplitude):
+def test_levelled_sounds_are_equally_loud(tmp_path, amplitude):
     (found,) = played(tmp_path, tone(amplitude, 8.0))
     assert found[-10:, 0] == pytest.approx(CEILING, rel=0.02)
     assert found[12:, 1].max() < 0.01
 
 
-def test_what_is_faint_is_not_amplified_without_end_and_silence_not_at_all(tmp_path):
+def test_amplification_is_limited_and_silence_stays_silent(tmp_path):
     (faint,) = played(tmp_path, tone(1e-4, 8.0))
     assert 0.002 < faint[-1, 0] < 0.0031
     (after,) = played(tmp_path, np.concatenate([tone(0.3, 3.0), np.zeros(30 * RATE), tone(0.3, 1.0)]))
     assert after[-10, 1] < 20.0 * np.log10(30.0) / 2.0
 
 
-def test_a_level_comes_down_at_once_and_rises_within_seconds(tmp_path):
+def test_a_level_falls_at_once_and_rises_within_seconds(tmp_path):
     (found,) = played(tmp_path, np.concatenate([tone(0.05, 6.0), tone(5.0, 2.0), tone(0.05, 8.0)]))
     loudest, reduction = found.T
     assert loudest.max() <= CEILING + 1e-6
@@ -67,7 +67,7 @@ def test_a_level_comes_down_at_once_and_rises_within_seconds(tmp_path):
     assert loudest[-1] == pytest.approx(CEILING, rel=0.05)
 
 
-def test_what_is_not_levelled_is_limited(tmp_path):
+def test_sounds_without_levelling_are_limited(tmp_path):
     loud, low = played(tmp_path, tone(7.0, 1.0), tone(0.3, 1.0), levelled=False)
     assert loud[-1, 1] == pytest.approx(20.0, abs=0.5)
     assert low[-1, 0] == pytest.approx(0.3, rel=0.01)
@@ -88,14 +88,14 @@ def test_without_a_level_the_limiter_never_rests_in_a_loud_case(tmp_path):
 
 
 def heard(case: str, seconds: float) -> np.ndarray:
-    """Return what is heard of a case [Pa]."""
+    """Return the sound of a case [Pa]."""
     instrument = Instrument(playable(case, None, {}))
     blocks = [one for _ in range(round(10 * seconds)) for one in instrument.play(BLOCK)]
     return np.concatenate([one.sound for one in blocks if isinstance(one, Part)])
 
 
 @pytest.mark.parametrize(("before", "now"), [("force", "pressure"), ("pressure", "force"), ("force", "acceleration")])
-def test_another_source_begins_at_the_level_at_which_the_one_before_ended(before, now):
+def test_another_source_starts_at_the_level_of_the_previous_one(before, now):
     instrument = Instrument(playable("strong-pressure", None, {}), before)
     last = [one for one in instrument.play(BLOCK) if isinstance(one, Part)][-1].sound[-1]
     instrument.listen_to(now)

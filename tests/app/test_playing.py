@@ -1,4 +1,4 @@
-"""What is played: the parts that come, what a change keeps, how strokes end."""
+"""Playing: parts of the stream, continuity at changes, ends of strokes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import stridula as st
 from stridula.app.playable import PRESETS
 from stridula.app.sources import SOURCES
 
-from .conversation import RATE, Conversation, conversation
+from .conversation import RATE, Conversation, conversation, parts_of
 
 FRICTION, ANGLE, LENGTH, AT = "contact.friction.coefficient", "slider.angle", "slider.length", "contact.at"
 
@@ -22,7 +22,7 @@ def run():
 
 @pytest.fixture(scope="module")
 def hello(server):
-    """Return what a page is greeted with."""
+    """Return the greeting of a page."""
     with conversation(server) as talk:
         return talk.until("hello")
 
@@ -33,7 +33,7 @@ def listening(talk: Conversation, source: str, case: str = "squeal", **overrides
     return talk
 
 
-def test_the_greeting_names_cases_controls_and_what_can_be_heard(hello):
+def test_the_greeting_names_cases_controls_and_sources(hello):
     assert (hello["version"], hello["rate"]) == (st.__version__, RATE)
     assert {"squeal", "judder", "stable-sliding"} <= {one["name"] for one in hello["presets"]}
     assert all(one["title"] and one["description"] for one in hello["presets"])
@@ -49,7 +49,7 @@ def test_the_greeting_names_cases_controls_and_what_can_be_heard(hello):
         assert one["group"] in hello["groups"]
 
 
-def test_a_scene_says_what_can_be_heard_of_it(talk):
+def test_a_scene_lists_its_sources(talk):
     sources = talk.scene("squeal")["sources"]
     units = {name: source["unit"] for name, source in sources.items()}
     assert units == {"pressure": "Pa", "force": "N", "friction": "N", "acceleration": "m/s²"}
@@ -57,7 +57,7 @@ def test_a_scene_says_what_can_be_heard_of_it(talk):
     assert talk.asks("listen", "problem", source="loudness")["problems"]
 
 
-def test_every_control_turns_something_of_some_case(hello, talk):
+def test_every_control_changes_something_in_some_case(hello, talk):
     seen: dict[str, object] = {}
     for preset in PRESETS:
         seen |= talk.scene(preset)["values"]
@@ -102,16 +102,16 @@ def test_the_pressure_is_what_the_forces_radiate(talk, run):
     heard = listening(talk, "pressure").play(4800).sound
     track = st.load_scenario("squeal").system.track
     wanted = st.radiate(run, track, (track.length / 2.0, 0.0, 0.5)).values[:, 0]
-    # The low-passes at the beginning and at the end see another past and another future.
+    # The low-passes at both ends depend on samples beyond.
     inner = slice(int(np.flatnonzero(wanted)[0]), len(wanted) - 100)
     loudest = np.abs(wanted).max()
     assert loudest > 1e-3
-    # The streamed one comes a sample later.
+    # The streamed signal is one sample late.
     assert np.abs(heard[1:] - wanted[:-1])[inner].max() < 1e-5 * loudest
 
 
 @pytest.mark.parametrize("source", ["pressure", "force", "acceleration"])
-def test_a_part_does_not_depend_on_how_much_is_asked_for(server, source):
+def test_a_part_does_not_depend_on_the_requested_length(server, source):
     heard = []
     for sizes in ((1920,), (1, 7, 479, 2, 3, 480, 468, 480)):
         with conversation(server) as talk:
@@ -130,7 +130,7 @@ def test_another_source_is_heard_at_once_and_without_a_click(server, talk):
         wanted = listening(other, "acceleration", "stable-sliding").play(28_800).sound[24_000:]
     talk.say("listen", source="acceleration")
     after = talk.play(4800).sound
-    # It begins as loud as the other ended, which dies away within some thousandths of a second.
+    # It starts at the level at which the other ended, which decays within some milliseconds.
     last = before[-1] * SOURCES["acceleration"].full_scale / SOURCES["force"].full_scale
     assert after[0] == pytest.approx(last, rel=1e-3)
     assert np.abs(wanted[0] - last) > 0.01 * last
@@ -149,7 +149,7 @@ def test_a_change_keeps_the_motion_and_comes_back_with_its_number(talk):
     assert after.clock[0] == pytest.approx(0.11)
     steps = np.abs(np.diff(np.concatenate([before.places, after.places])))
     assert np.abs(after.places[0] - before.places[-1]) <= 2.0 * steps[1000:].max() < 1e-3
-    # A restart jumps, or this says nothing.
+    # A restart jumps, or this test shows nothing.
     talk.say("restart")
     again = talk.play(480)
     assert set(again.stroke) == {2}
@@ -157,7 +157,7 @@ def test_a_change_keeps_the_motion_and_comes_back_with_its_number(talk):
 
 
 @pytest.mark.parametrize(("key", "value"), [(ANGLE, 0.6), (LENGTH, 0.6), ("section.height", 0.007), ("damping", 0.02)])
-def test_bodies_change_on_the_way(talk, key, value):
+def test_bodies_change_during_a_run(talk, key, value):
     talk.scene("stable-sliding")
     before = talk.play(4800)
     answer = talk.scene("stable-sliding", {key: value})
@@ -177,7 +177,7 @@ def test_another_case_or_another_kind_of_drive_begins_a_stroke(talk):
     talk.play(480)
     assert not talk.scene("squeal")["goes_on"]
     assert set(talk.play(480).stroke) == {2}
-    # What draws the root cannot go over into what pushes it.
+    # An imposed velocity of the root cannot change into a force.
     drawn = talk.scene(
         "squeal", {"drives.0.kind": "imposed velocity", "drives.0.velocity": 0.01, "drives.0.normal_load": 2}
     )
@@ -194,7 +194,7 @@ def test_more_friction_turns_sliding_into_stick_slip_and_jumps_within_a_second(t
     assert after[2] < before[2] - 0.3
 
 
-def test_without_repeating_a_stroke_ends_off_the_track_and_says_so(talk):
+def test_without_repeating_a_stroke_ends_off_the_track_and_reports_it(talk):
     talk.say("repeat", on=False)
     track = talk.scene("stable-sliding")["track"]["length"]
     near = {AT: track - 0.005}
@@ -216,7 +216,7 @@ def test_strokes_follow_each_other_off_the_track(talk):
     played = talk.play(RATE // 2)
     assert {(stop["why"], stop["goes_on"]) for stop in played.stops} == {("off the track", True)}
     assert len(played.sound) == RATE // 2
-    # A stroke ends where another begins; the time played knows no strokes.
+    # A stroke ends where another begins; the time played continues over strokes.
     assert played.stroke[-1] - played.stroke[0] == len(played.stops)
     assert np.all(np.diff(played.clock) > 0.0)
     assert np.all(np.diff(played.clock) <= 0.01 + 1e-9)
@@ -234,9 +234,23 @@ def test_a_tip_at_rest_begins_another_stroke(talk):
     assert set(still.stroke) == {played.stroke[-1]}
 
 
-def test_linear_theory_says_what_grows(talk):
+def test_linear_theory_lists_growing_modes(talk):
     talk.scene("stable-sliding")
     theory = talk.until("theory")
     found = st.sliding_stability(st.load_scenario("stable-sliding").system)
     assert theory["equilibrium"] == found.attrs["equilibrium"] == "sliding"
     assert len(theory["modes"]) == min(12, int(found["unstable"].sum()))
+
+
+def test_a_case_sounds_until_another_one_is_ready(talk):
+    talk.scene("squeal")
+    before = talk.revision
+    talk.revision += 1
+    talk.say("scene", revision=talk.revision, case="wheel", overrides={}, text=None)
+    talk.say("pull", parts=2, samples=480)
+    heard = []
+    while not heard or not isinstance(heard[-1], dict) or heard[-1]["type"] != "scene":
+        heard.append(talk.hear())
+    (parts,) = [parts_of(one) for one in heard if isinstance(one, bytes)]
+    assert [(part.revision, len(part.sound)) for part in parts] == [(before, 480)] * 2
+    assert {part.revision for part in talk.play(960).parts} == {talk.revision}

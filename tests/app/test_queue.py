@@ -15,7 +15,7 @@ result = given.map(([what, now]) => {
 });"""
 
 
-def test_the_queue_grows_while_drop_outs_go_on_and_shrinks_again(tmp_path):
+def test_the_queue_grows_during_drop_outs_and_shrinks_again(tmp_path):
     drops = [["drop", 1000.0 * k] for k in range(1, 31)]
     rests = [["rest", 30_000.0 + 10_000.0 * k] for k in range(1, 101)]
     found = result_of(tmp_path, QUEUE, [["rest", 0.0], *drops, *rests])
@@ -29,7 +29,7 @@ def test_the_queue_grows_while_drop_outs_go_on_and_shrinks_again(tmp_path):
     assert lengths[-1] == pytest.approx(0.08)
 
 
-def test_a_machine_that_cannot_keep_up_is_told_so_until_it_can(tmp_path):
+def test_a_slow_machine_is_reported_until_it_keeps_up(tmp_path):
     drops = [["drop", 1000.0 * k] for k in range(1, 13)]
     behind = [said for _, said in result_of(tmp_path, QUEUE, [*drops, ["rest", 21_000.0], ["rest", 22_100.0]])]
     assert behind == [False] * 10 + [True, True, True, False]
@@ -56,5 +56,5 @@ map.hold();
 result = said;"""
 
 
-def test_a_map_that_is_computed_waits_after_a_drop_out_and_then_goes_on(tmp_path):
+def test_the_computation_of_a_map_pauses_after_a_drop_out(tmp_path):
     assert result_of(tmp_path, MAP) == ["no map", "map", "no map", "map"]

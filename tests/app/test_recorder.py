@@ -1,4 +1,4 @@
-"""What was recorded on the page, as a file."""
+"""Recordings of the page as files."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def recorded(folder, parts):
 
 def test_a_recording_holds_what_was_heard_1_db_below_full_scale(tmp_path):
     time = np.arange(RATE // 4) / RATE
-    # A tone on a weight: the weight is not heard.
+    # A tone on a constant weight, which is not audible.
     sound = 5.0 + 0.02 * np.sin(2.0 * np.pi * 1000.0 * time)
     found = recorded(tmp_path, [(part, 10.0, "Pa") for part in np.split(sound, 5)])
     assert (found["seconds"], found["on"]) == (0.25, False)
@@ -52,14 +52,14 @@ def test_a_recording_holds_what_was_heard_1_db_below_full_scale(tmp_path):
 
 
 @pytest.mark.parametrize("other", [(0.05, "Pa"), (10.0, "N")], ids=["scale", "unit"])
-def test_of_several_sources_there_is_no_one_full_scale(tmp_path, other):
+def test_several_sources_have_no_common_full_scale(tmp_path, other):
     noise = np.random.default_rng(2).normal(size=480)
     recorded(tmp_path, [(noise, 10.0, "Pa"), (noise, *other)])
     with soundfile.SoundFile(tmp_path / "found.wav") as file:
         assert file.comment == "stridula: recorded on the page, several sources"
 
 
-def test_silence_is_a_file_and_nothing_is_none(tmp_path):
+def test_silence_is_a_file_and_an_empty_recording_is_not(tmp_path):
     recorded(tmp_path, [(np.zeros(480), 10.0, "Pa")])
     assert not soundfile.read(tmp_path / "found.wav")[0].any()
     assert recorded(tmp_path, [])["bytes"] is None

@@ -1,4 +1,4 @@
-"""What was played last, as files: they open elsewhere and hold what was heard."""
+"""The last seconds played as files: they open elsewhere and hold the sound that was heard."""
 
 from __future__ import annotations
 
@@ -46,14 +46,14 @@ def test_the_sound_of_the_pressure_is_in_pascals(talk, tmp_path):
     assert 1.0 / float(pressure.time[1] - pressure.time[0]) == pytest.approx(RATE)
     assert np.abs(sound).max() > 1e-3
     assert np.allclose(pressure.values[:, 0], sound, atol=1e-6 * np.abs(sound).max())
-    # A second file begins where it was played.
+    # A second file begins at its time of playing.
     talk.play(480)
     file.write_bytes(talk.save("wav"))
     assert st.read_wav(file).sizes["time"] == RATE // 2 + 480
 
 
 @pytest.mark.parametrize(("source", "unit"), [("force", "N"), ("acceleration", "m/s²")])
-def test_the_sound_of_others_says_what_full_scale_is(talk, source, unit):
+def test_other_sounds_state_their_full_scale(talk, source, unit):
     sound = heard(talk, source, 0.2)
     with soundfile.SoundFile(io.BytesIO(talk.save("wav"))) as file:
         comment, samples = file.comment, file.read()
@@ -65,7 +65,7 @@ def test_the_sound_of_others_says_what_full_scale_is(talk, source, unit):
     assert np.abs(samples).max() == pytest.approx(10 ** (-1 / 20), abs=1e-3)
 
 
-def test_only_what_is_heard_now_is_in_the_sound(talk):
+def test_only_the_present_source_is_in_the_sound(talk):
     heard(talk, "force", 0.1)
     talk.say("listen", source="acceleration")
     talk.play(4800)
@@ -73,7 +73,7 @@ def test_only_what_is_heard_now_is_in_the_sound(talk):
     assert len(samples) == 4800
 
 
-def test_the_record_opens_as_any_and_is_that_of_the_run(talk, tmp_path):
+def test_the_record_opens_and_equals_that_of_the_run(talk, tmp_path):
     heard(talk, "pressure", 0.2)
     file = tmp_path / "played.nc"
     file.write_bytes(talk.save("nc"))
@@ -102,7 +102,7 @@ def changed_on_the_way(talk: Conversation, folder: Path) -> Path:
     return file
 
 
-def test_the_record_runs_again_as_what_was_played_last(talk, tmp_path):
+def test_the_record_reruns_the_last_scenario(talk, tmp_path):
     file = changed_on_the_way(talk, tmp_path)
     again = st.load_scenario(file)
     assert again.system == st.load_scenario("stable-sliding", {FRICTION: 0.7}).system
@@ -111,7 +111,7 @@ def test_the_record_runs_again_as_what_was_played_last(talk, tmp_path):
 
 @pytest.mark.parametrize("case", ["weak-pressure", "violin", "glass"])
 def test_the_regime_shown_is_that_of_the_record(case, tmp_path):
-    """Over the last second, in which something was turned and energies counted anew."""
+    """Over the last second, in which a value was changed and energies restarted."""
     instrument = Instrument(playable(case, None, {}))
     key = {"weak-pressure": FRICTION, "violin": "drives.*.x", "glass": "drives.0.z"}[case]
     value = instrument.played.turned.values[key]
@@ -128,12 +128,12 @@ def test_the_regime_shown_is_that_of_the_record(case, tmp_path):
     assert (np.diff(run.damping_loss) >= -1e-12 * float(run.damping_loss[-1])).all()
     saved = st.regime(run.isel(time=slice(-RATE, None)), start=0.0)
     assert shown["regime"] == saved.regime.item()
-    # What judders has no tone to speak of.
+    # Judder has no tone.
     if case != "weak-pressure":
         assert shown["frequency"] == pytest.approx(saved.frequency.item(), rel=1e-3)
 
 
-def test_the_record_says_what_was_changed_when(talk, tmp_path):
+def test_the_record_lists_changes_with_their_times(talk, tmp_path):
     file = changed_on_the_way(talk, tmp_path)
     changes = json.loads(st.load(file).attrs["changes"])
     assert [change["time"] for change in changes] == pytest.approx([0.0, 0.1])
@@ -143,7 +143,7 @@ def test_the_record_says_what_was_changed_when(talk, tmp_path):
         assert found == st.load_scenario("stable-sliding", {FRICTION: friction}).system
 
 
-def test_changes_without_sound_are_one_and_old_ones_go(talk, tmp_path):
+def test_changes_without_sound_merge_and_old_ones_are_dropped(talk, tmp_path):
     talk.scene("stable-sliding")
     for friction in (0.5, 0.6, 0.7):
         talk.scene("stable-sliding", {FRICTION: friction})

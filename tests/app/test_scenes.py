@@ -1,4 +1,4 @@
-"""Scenes that are refused: in the words of `load_scenario`, and all goes on as it was."""
+"""Refused scenes: messages as in `load_scenario`, and playing continues unchanged."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SLIDES = 'base = "stable-sliding"\n'
 
 @pytest.fixture
 def plays(talk):
-    """Play, and look that it goes on after whatever was asked."""
+    """Play, and check that it continues after any request."""
     assert talk.scene("stable-sliding")["type"] == "scene"
     before = talk.play(4800)
     yield talk
@@ -47,7 +47,7 @@ def problems_of(name, overrides=None):
     ],
     ids=str,
 )
-def test_values_are_refused_as_anywhere(plays, overrides):
+def test_values_are_refused_as_in_scenarios(plays, overrides):
     answer = plays.scene("stable-sliding", overrides)
     assert answer["type"] == "refused"
     assert answer["problems"] == problems_of("stable-sliding", overrides)
@@ -116,14 +116,14 @@ kind = "modal beam"
 
 @pytest.mark.parametrize("path", ["/etc/hostname", "/nowhere"])
 def test_a_link_reads_no_file(talk, path):
-    """Neither what it holds nor whether it is there is told."""
+    """Neither the content nor the existence of the file is revealed."""
     keys = {"bodies.glass.profile.shape": "mesh", "bodies.glass.profile.file": path}
     answer = talk.scene("glass", keys)
     assert set(answer["refused"]) == set(keys)
     assert not any(word in line for line in told(answer) for word in ("no such file", "deduce", "cannot read"))
 
 
-def test_steps_without_end_are_refused(talk):
+def test_too_many_steps_are_refused(talk):
     answer = talk.scene(text="base = 'squeal'\n[simulation]\nstep = '0.0001 us'\n")
     assert told(answer) == ["simulation.step must be at least 1e-07 s to be played, got 1e-10"]
     answer = talk.scene("belt", {"simulation.step": 1e-10})
@@ -131,7 +131,7 @@ def test_steps_without_end_are_refused(talk):
 
 
 def told(answer):
-    """Return what is wrong with a scene, a line each."""
+    """Return the problems of a scene, one line each."""
     return [line for lines in answer["refused"].values() for line in lines]
 
 
@@ -178,7 +178,7 @@ TOO_MUCH = {
 
 
 @pytest.mark.parametrize(("text", "begins"), TOO_MUCH.values(), ids=TOO_MUCH)
-def test_what_cannot_be_played_in_time_is_refused(plays, text, begins):
+def test_systems_too_slow_to_play_are_refused(plays, text, begins):
     (problem,) = plays.scene(text=text)["problems"]
     assert problem.startswith(begins)
 
@@ -189,7 +189,7 @@ def test_a_refused_value_stays_as_it_was_and_the_others_are_played(talk):
     assert short["type"] == "refused"
     assert short["refused"] == {"track.length": short["problems"]}
     assert short["kept"] == {"case": "stable-sliding", "text": None, "overrides": {"damping": 0.03}}
-    # One turns on before the answer has come.
+    # A further change before the answer arrives.
     more = {"damping": 0.02, "track.length": 0.2, "slider.angle": 9.0, "slider.length": 0.4}
     answer = talk.scene("stable-sliding", more)
     assert (answer["type"], set(answer["refused"])) == ("scene", {"track.length", "slider.angle"})
@@ -217,7 +217,7 @@ def test_a_kind_is_played_though_a_value_beside_it_is_refused(talk):
     ],
     ids=str,
 )
-def test_a_link_plays_what_is_right_of_it(talk, case, overrides, refused, kept):
+def test_a_link_plays_its_valid_part(talk, case, overrides, refused, kept):
     answer = talk.scene(case, overrides)
     assert (answer["type"], set(answer["refused"])) == ("scene", {refused})
     assert answer["kept"] == {"case": "judder" if refused else "squeal", "text": None, "overrides": kept}
@@ -229,14 +229,14 @@ def test_a_text_nested_too_deep_is_refused_in_one_line(plays):
     assert "\n" not in problem
 
 
-def test_what_is_played_runs_elsewhere_as_it_is(talk, tmp_path):
+def test_the_played_scenario_runs_unchanged_elsewhere(talk, tmp_path):
     overrides = {"contact.friction.coefficient": 0.7, "slider.angle": 0.6, "section.height": 0.009}
     answer = talk.scene("squeal", overrides)
     file = tmp_path / "played.toml"
     file.write_text(answer["toml"], encoding="utf-8")
     assert st.load_scenario(file).system == st.load_scenario("squeal", overrides).system
     assert st.load_scenario(file).title == answer["title"] == "Squeal"
-    # Its text is played as the case was.
+    # Its text plays like the case.
     again = talk.scene(text=answer["toml"])
     assert (again["values"], again["toml"]) == (answer["values"], answer["toml"])
     assert not again["goes_on"]

@@ -1,4 +1,4 @@
-"""The server: what it gives to whom, and how it refuses."""
+"""The server: files, allowed clients and refusals."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import socket
 from importlib.resources import files
 
 import pytest
+from kernels.caches import incomplete_cache
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
@@ -23,7 +24,7 @@ PAGE = [entry for entry in FOLDER.iterdir() if entry.is_file()]
 
 
 @pytest.mark.parametrize("entry", PAGE, ids=lambda entry: entry.name)
-def test_every_file_of_the_page_comes_as_it_is_and_says_what_it_is(server, entry):
+def test_every_file_of_the_page_is_served_unchanged_with_its_type(server, entry):
     answer, content = server.get(f"/{entry.name}")
     kinds = {"js": "text/javascript", "css": "text/css", "html": "text/html", "svg": "image/svg+xml"}
     assert (answer.status, content) == (200, entry.read_bytes())
@@ -31,17 +32,17 @@ def test_every_file_of_the_page_comes_as_it_is_and_says_what_it_is(server, entry
 
 
 @pytest.mark.parametrize("entry", list(FOLDER.joinpath("vendor").iterdir()), ids=lambda entry: entry.name)
-def test_what_others_wrote_comes_as_it_is_with_its_licence(server, entry):
+def test_third_party_files_are_served_unchanged_with_their_licence(server, entry):
     answer, content = server.get(f"/vendor/{entry.name}")
     kinds = {"js": "text/javascript", "txt": "text/plain"}
     assert (answer.status, content) == (200, entry.read_bytes())
     assert answer.getheader("content-type").partition(";")[0] == kinds[entry.name.rpartition(".")[2]]
     assert b"MIT" in content
-    # It speaks with nobody: of the addresses in it none is asked for.
+    # The page contacts nobody: no address in it is requested.
     assert not re.search(rb"import\s*\(|from\s*[\"']https?:", content)
 
 
-def test_the_page_may_load_and_speak_with_nothing_but_its_server(server):
+def test_the_page_may_contact_only_its_server(server):
     answer, content = server.get("/")
     policy = dict(part.strip().partition(" ")[::2] for part in answer.getheader("content-security-policy").split(";"))
     assert policy["default-src"] == policy["frame-ancestors"] == policy["base-uri"] == "'none'"
@@ -82,12 +83,12 @@ def test_no_path_leads_out_of_the_page(server, path):
 
 
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:80", "127.0.0.1.evil.example", "192.168.0.1", ""])
-def test_who_calls_the_server_by_another_name_is_refused(server, host):
+def test_requests_for_another_host_name_are_refused(server, host):
     assert server.get("/", Host=host)[0].status == 421
 
 
 @pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example", "192.168.0.1"])
-def test_who_calls_the_socket_by_another_name_is_refused(server, host):
+def test_sockets_for_another_host_name_are_refused(server, host):
     with (
         socket.create_connection(("127.0.0.1", server.port), WAIT) as wire,
         pytest.raises(InvalidStatus) as refused,
@@ -101,12 +102,12 @@ def test_who_calls_the_socket_by_another_name_is_refused(server, host):
 def test_this_machine_has_three_names(server, host):
     answer, _ = server.get("/", Host=f"{host}:{server.port}")
     assert answer.status == 200
-    # A policy cannot hold an address of IPv6: browsers would complain of it.
+    # A policy cannot hold an IPv6 address: browsers would log an error.
     assert "[" not in answer.getheader("content-security-policy")
     assert "connect-src 'self'" in answer.getheader("content-security-policy")
 
 
-def test_an_open_server_has_names_of_the_house_and_addresses(tmp_path):
+def test_an_open_server_accepts_local_names_and_addresses(tmp_path):
     opened = Server(tmp_path / "errors", arguments=["--open"])
     try:
         for host in ("bench", "bench.local", "bench.lan:80", "192.168.0.7:87", "[fe80::1]:87"):
@@ -125,7 +126,7 @@ def test_a_page_from_elsewhere_is_refused(server, origin):
     assert refused.value.rcvd.code == 4403
 
 
-def test_another_host_wants_to_be_let_in():
+def test_another_host_must_be_allowed():
     done = app("--host", "0.0.0.0", "--port", "0")
     assert (done.returncode, done.stdout) == (2, "")
     assert re.fullmatch(r"stridula: host must be .* unless --open lets other machines in, got '0.0.0.0'\n", done.stderr)
@@ -145,7 +146,7 @@ def test_an_open_server_prints_addresses_that_work(monkeypatch, host, first, oth
     assert addresses(host, 87) == [first, f"other machines open {others}"]
 
 
-def test_the_address_by_which_other_machines_come_is_one_or_none():
+def test_there_is_one_address_for_other_machines_or_none():
     assert len(outward()) <= 1
     for found in outward():
         assert not ipaddress.ip_address(found).is_unspecified
@@ -165,8 +166,8 @@ def test_a_port_that_is_taken_is_named_in_one_line():
     assert re.fullmatch(words, done.stderr)
 
 
-def test_a_first_start_says_that_it_compiles_and_complains_of_nothing(tmp_path):
-    server = Server(tmp_path / "errors", NUMBA_CACHE_DIR=str(tmp_path / "cache"))
+def test_a_start_that_compiles_reports_it_and_no_problem(tmp_path):
+    server = Server(tmp_path / "errors", NUMBA_CACHE_DIR=str(incomplete_cache(tmp_path)))
     try:
         assert server.said == f"{COMPILING}\n"
         assert server.complaints == ""
@@ -213,7 +214,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("text", BAD.values(), ids=BAD)
-def test_a_message_that_is_none_is_told_in_one_line_and_all_goes_on(talk, text):
+def test_an_invalid_message_is_reported_in_one_line_and_playing_continues(talk, text):
     talk.scene()
     talk.play(480)
     talk.socket.send(text)
@@ -224,13 +225,13 @@ def test_a_message_that_is_none_is_told_in_one_line_and_all_goes_on(talk, text):
     assert talk.play(480).parts[0].clock == pytest.approx(0.02)
 
 
-def test_a_number_without_end_is_refused(talk):
+def test_an_infinite_number_is_refused(talk):
     talk.socket.send('{"type": "scene", "revision": 9, "overrides": {"slider.length": 1' + 400 * "0" + "}}")
     assert set(talk.until("scene")["refused"]) == {"slider.length"}
     assert talk.scene()["type"] == "scene"
 
 
-def test_bytes_are_no_message(talk):
+def test_bytes_are_not_a_message(talk):
     talk.socket.send(b"\x00\x01")
     (problem,) = talk.until("problem")["problems"]
     assert "text" in problem
@@ -243,7 +244,7 @@ def test_nothing_is_played_before_a_scene_is_chosen(talk):
         assert talk.until("problem")["problems"] == ["scene must be given first"]
 
 
-def test_a_message_too_large_closes_the_socket_and_the_server_lives_on(server):
+def test_a_message_too_large_closes_the_socket_and_the_server_continues(server):
     with conversation(server) as talk:
         talk.until("hello")
         talk.socket.send(json.dumps({"type": "restart", "filled": "x" * 200_000}))

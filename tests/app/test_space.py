@@ -1,4 +1,4 @@
-"""Systems in space on the page: what is played and told, what is drawn of it, and what it costs."""
+"""Systems in space on the page: sound, messages, drawings and their cost."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from stridula.scenarios.show import scenario_text
 from .conversation import RATE, parts_of
 from .scripting import result_of
 
-# What becomes a body of the page, and where its corners are under some numbers, in the page's own scripts.
+# A body in the page's own scripts, and its corners for some modal values.
 MOVED = """import { Body } from "./surfaces.js";
 result = given.map(({ described, numbers, rates, steady }) => {
   const body = new Body(described);
@@ -68,11 +68,11 @@ def test_every_system_in_space_is_played_and_drawn(talk, case):
         rows = heard(names[touch["body"]]["rows"])
         assert rows[touch["row"]].shape == (3, names[touch["body"]]["numbers"])
     assert 0.0 < scene["seconds_kept"] <= 10.0
-    # Small enough to be said again when bodies change.
+    # Small enough to be sent again when bodies change.
     assert len(str(scene)) < 3_000_000
 
 
-def test_bodies_that_are_drawn_already_are_not_said_again(talk):
+def test_bodies_already_drawn_are_not_sent_again(talk):
     first = talk.scene("glass")
     again = talk.scene("glass", {"contacts.0.friction.kinetic": 0.31})
     assert again["drawn"] == first["drawn"]
@@ -88,7 +88,7 @@ def test_bodies_that_are_drawn_already_are_not_said_again(talk):
 def test_a_text_in_space_is_played_as_it_is_described(talk):
     scene = talk.scene(text=scenario_text("glass"))
     assert scene["type"] == "scene"
-    # Its bodies stay bodies: no list of shapes takes their place.
+    # Its bodies are not replaced by lists of shapes.
     assert 'shape = "line"' in scene["toml"]
     assert len(scene["toml"]) < 5000
     assert talk.scene("glass")["toml"] == scene["toml"]
@@ -103,7 +103,7 @@ def test_the_scenario_of_the_page_runs_the_same(tmp_path):
 
 
 @pytest.mark.parametrize("case", ["glass", "pin-on-disc"])
-def test_what_is_heard_is_what_a_run_has(case):
+def test_the_sound_is_that_of_a_run(case):
     instrument = Instrument(playable(case, None, {}), "probe 1")
     parts = [part for part in instrument.play(480) if isinstance(part, Part)]
     sound = np.concatenate([part.sound for part in parts])
@@ -115,14 +115,14 @@ def test_what_is_heard_is_what_a_run_has(case):
 
 
 @pytest.mark.parametrize("case", ["glass", "pin-on-disc", "brake"])
-def test_controls_turn_what_acts_and_rubs_first_and_no_mesh(case):
+def test_controls_change_loads_and_friction_first_and_no_mesh(case):
     before = playable(case, None, {})
     controls = before.turned.controls
     assert controls[0].group == "Friction"
     keys = [control.key for control in controls]
     assert not any(word in key for key in keys for word in ("profile", "mesh", "cutoff", "residual", "origin"))
     quick = [control for control in controls if "material" not in control.key]
-    # Each of them changes something, and none takes modes to be found again.
+    # Each of them has an effect, and none requires modes to be computed again.
     for control in quick[:8]:
         value = before.turned.values[control.key]
         assert control.low * control.scale <= value <= control.high * control.scale
@@ -131,7 +131,7 @@ def test_controls_turn_what_acts_and_rubs_first_and_no_mesh(case):
         assert after.system != before.system
 
 
-def test_how_fast_a_glass_turns_is_among_what_drives_it(talk):
+def test_the_turning_speed_of_a_glass_is_among_its_drives(talk):
     scene = talk.scene("glass")
     keys = [control["key"] for control in scene["turned"]["controls"]]
     assert keys.index("bodies.glass.turning") < keys.index("bodies.glass.material.young")
@@ -141,7 +141,7 @@ def test_how_fast_a_glass_turns_is_among_what_drives_it(talk):
     assert set(talk.play(480).stroke) == {1}
 
 
-def test_what_is_too_large_is_refused_before_its_modes_are_found():
+def test_too_large_bodies_are_refused_before_modes_are_computed():
     with pytest.raises(
         ScenarioError, match=r"block.mesh.divisions must make at most 4000 elements to be played"
     ) as told:
@@ -149,8 +149,8 @@ def test_what_is_too_large_is_refused_before_its_modes_are_found():
     assert "got [30, 30, 30]" in str(told.value)
 
 
-def test_what_takes_long_comes_in_pieces(talk):
-    """No pull holds up the other pages for long: of what is slow there is as much as is computed soon."""
+def test_slow_systems_are_sent_in_pieces(talk):
+    """No request delays other pages for long: slow systems return what is computed quickly."""
     assert talk.scene("brake")["speed"] < 0.5
     talk.say("pull", parts=20, samples=480)
     parts = parts_of(talk.bytes())
@@ -158,7 +158,7 @@ def test_what_takes_long_comes_in_pieces(talk):
     assert all(len(part.sound) <= 480 for part in parts)
 
 
-def test_a_record_in_space_opens_as_any(talk, tmp_path):
+def test_a_record_in_space_opens_like_any_other(talk, tmp_path):
     talk.scene("pin-on-disc")
     talk.play(2400)
     file = tmp_path / "played.nc"
@@ -173,14 +173,14 @@ def test_a_record_in_space_opens_as_any(talk, tmp_path):
     assert np.allclose(record.tangential_force, run.tangential_force, rtol=1e-6)
 
 
-def test_points_of_surfaces_are_one_contact_for_what_goes_on(talk, tmp_path):
+def test_points_of_a_surface_count_as_one_contact_in_the_last_seconds(talk, tmp_path):
     instrument = Instrument(playable("brake", None, {}))
     list(instrument.play(24))
     variables, _ = instrument.last_seconds.moment(1.0)
     assert variables["normal_force"].shape == (24, 2)
     assert variables["status_share"].shape == (24, 2, 3)
     assert variables["normal_force"].mean(axis=0) == pytest.approx([2000.0, 2000.0], rel=0.1)
-    # Of 64 contacts less than ten seconds are kept.
+    # For 64 contacts less than ten seconds are kept.
     assert 0.5 < instrument.last_seconds.seconds < 5.0
 
 
@@ -228,7 +228,7 @@ def test_a_block_is_split_along_its_edges(tmp_path):
     assert np.linalg.norm(areas, axis=1).sum() == pytest.approx(2 * 0.01 * 0.01 + 4 * 0.01 * 0.149, rel=1e-5)
     assert (np.linalg.norm(areas, axis=1) > 0.0).all()
     assert np.einsum("ti,ti->", areas, corners.mean(axis=1)) / 3.0 == pytest.approx(0.01 * 0.149 * 0.01, rel=1e-5)
-    # Its creases are its twelve edges.
+    # Its drawn edges are its twelve edges.
     ends = place[np.array(found["source"])[np.array(found["edges"])]].reshape(-1, 2, 3)
     assert np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum() == pytest.approx(8 * 0.01 + 4 * 0.149, rel=1e-5)
 
@@ -239,7 +239,7 @@ def test_large_surfaces_have_fewer_corners():
     few = thinned.clustered(whole, 100)
     assert len(few.place) <= 100
     assert few.polygons.max() < len(few.place)
-    # Corners are corners of the whole, and move as these do.
+    # Corners are those of the whole surface, and move with it.
     apart = np.linalg.norm(few.place[:, None] - whole.place[None], axis=2)
     nearest = apart.argmin(axis=1)
     assert apart.min(axis=1).max() == 0.0
@@ -262,7 +262,7 @@ def test_outlines_with_fewer_corners_keep_their_shape():
     assert thinned.with_fewer_corners(glass, 10_000).place.shape == glass.place.shape
 
 
-def test_of_many_modes_those_are_kept_that_are_seen(monkeypatch):
+def test_only_visible_modes_are_kept_of_many(monkeypatch):
     block = st.SolidBody.block((0.1, 0.02, 0.05), (6, 2, 3), st.Material(2e11, 7800.0, 0.3), cutoff=4e4)
     whole = drawing_space._Body("block", block.drawn)
     monkeypatch.setattr(drawing_space, "MOST_NUMBERS", 8 * block.drawn.shapes[..., 0].size)
@@ -275,7 +275,7 @@ def test_of_many_modes_those_are_kept_that_are_seen(monkeypatch):
     assert np.linalg.norm(missed) > 0.0
 
 
-def test_what_the_page_is_told_of_a_surface_is_all_of_it():
+def test_the_page_receives_the_whole_surface():
     drawn = DrawnSurface(np.eye(3), np.array([[0, 1, 2]]), np.ones((3, 3, 2)))
     told = drawing_space._Body("plate", drawn).described
     assert {name: heard(told[name]).tolist() for name in drawn_table(drawn)} == {

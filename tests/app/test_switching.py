@@ -1,4 +1,4 @@
-"""What one turns or chooses on the page never ends the stroke for good; without a browser and without a server."""
+"""No change on the page ends the stroke for good; without a browser and without a server."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ UNBELIEVED = {"energy created", "not finite", "contact unsolved"}
 
 
 def after(case: str, hundredths: int, repeats: bool = True) -> Instrument:
-    """Return an instrument that has played a case for so many hundredths of a second."""
+    """Return an instrument that has played a case for a number of hundredths of a second."""
     found = Instrument(playable(case, None, {}))
     found.repeats = repeats
     played(found, hundredths)
@@ -26,7 +26,7 @@ def after(case: str, hundredths: int, repeats: bool = True) -> Instrument:
 
 
 def played(instrument: Instrument, hundredths: int) -> tuple[list[Part], list[str]]:
-    """Play on and return the parts, and why strokes ended."""
+    """Continue and return the parts, and the reasons why strokes ended."""
     came = [one for _ in range(hundredths) for one in instrument.play(RATE // 100)]
     return [one for one in came if isinstance(one, Part)], [one.why for one in came if isinstance(one, Stop)]
 
@@ -49,7 +49,7 @@ def test_another_case_begins_a_stroke_at_any_moment(before, now):
 
 
 @pytest.mark.parametrize("case", PRESETS)
-def test_no_jump_of_a_control_makes_a_stroke_that_cannot_be_believed(case):
+def test_no_change_of_a_control_makes_a_faulty_stroke(case):
     held = values(playable(case, None, {}).tables)
     jumps = 0
     for control in CONTROLS:
@@ -68,7 +68,7 @@ def test_no_jump_of_a_control_makes_a_stroke_that_cannot_be_believed(case):
 
 
 @pytest.mark.parametrize("case", PRESETS)
-def test_a_moved_contact_plays_on_at_its_new_place(case):
+def test_a_moved_contact_continues_at_its_new_place(case):
     instrument = after(case, 31)
     here = float(played(instrument, 1)[0][-1].chunk.contact["contact_position"][-1])
     at = instrument.live.system.contacts[0].at
@@ -79,12 +79,12 @@ def test_a_moved_contact_plays_on_at_its_new_place(case):
 
 
 def broken(instrument: Instrument) -> Instrument:
-    """Return an instrument in whose march energy comes from nowhere."""
+    """Return an instrument whose march creates energy."""
     instrument.live._belief.initial_energy += 1.0
     return instrument
 
 
-def test_a_stroke_that_cannot_be_believed_is_followed_by_another():
+def test_a_faulty_stroke_is_followed_by_another():
     instrument = broken(after("squeal", 5))
     parts, ended = played(instrument, 10)
     assert ended == ["energy created"]
@@ -92,7 +92,7 @@ def test_a_stroke_that_cannot_be_believed_is_followed_by_another():
     assert not instrument.ended
 
 
-def test_strokes_that_end_as_soon_as_they_begin_do_not_begin_without_end(monkeypatch):
+def test_strokes_that_end_at_once_do_not_restart_for_ever(monkeypatch):
     instrument = broken(after("squeal", 5))
     restart = instrument.live.restart
     monkeypatch.setattr(instrument.live, "restart", lambda: (restart(), broken(instrument)))
@@ -101,7 +101,7 @@ def test_strokes_that_end_as_soon_as_they_begin_do_not_begin_without_end(monkeyp
     assert instrument.ended
 
 
-def test_a_tip_put_at_the_very_end_of_the_track_does_not_begin_without_end():
+def test_a_tip_at_the_end_of_the_track_does_not_restart_for_ever():
     length = playable("stable-sliding", None, {}).system.track.length
     instrument = Instrument(playable("stable-sliding", None, {AT: length * (1.0 - 1e-13)}))
     parts, ended = played(instrument, 2)
@@ -120,7 +120,7 @@ def test_a_tip_put_at_the_very_end_of_the_track_does_not_begin_without_end():
     ],
     ids=["new stroke", "stroke again", "a change", "another case"],
 )
-def test_what_has_ended_begins_anew(begin):
+def test_an_ended_stroke_restarts(begin):
     instrument = broken(after("squeal", 5, repeats=False))
     assert played(instrument, 1) == ([], ["energy created"])
     assert played(instrument, 1) == ([], [])
@@ -131,7 +131,7 @@ def test_what_has_ended_begins_anew(begin):
     assert not UNBELIEVED & set(ended)
 
 
-def test_a_tip_at_rest_begins_anew_when_strokes_are_to_follow_each_other_again():
+def test_a_tip_at_rest_restarts_when_repetition_is_turned_on():
     at_rest = {"drives.0.transverse": 0.5, "contact.friction.coefficient": 2.0, "damping": 0.1}
     instrument = Instrument(playable("stable-sliding", None, at_rest))
     instrument.repeats = False

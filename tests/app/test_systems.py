@@ -1,4 +1,4 @@
-"""Systems that are no two beams on the page: what is played, drawn, heard, turned and said of them."""
+"""Systems other than two beams on the page: playing, drawing, sound, controls and messages."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def test_a_spring_to_the_ground_is_drawn_where_nothing_touches(talk):
 
 
 @pytest.mark.parametrize("case", SYSTEMS)
-def test_all_that_can_be_heard_of_a_system_is(talk, case):
+def test_all_audible_bodies_of_a_system_are_heard(talk, case):
     for name in talk.scene(case)["sources"]:
         talk.say("listen", source=name)
         sound = talk.play(2400).sound
@@ -98,7 +98,7 @@ def test_all_that_can_be_heard_of_a_system_is(talk, case):
         assert np.isfinite(sound).all()
 
 
-def test_a_violin_is_heard_at_its_bridge_as_a_run_has_it():
+def test_a_violin_is_heard_at_its_bridge_as_in_a_run():
     instrument = Instrument(playable("violin", None, {}))
     assert instrument.heard_as.name == "Support force, string left end"
     parts = [part for part in instrument.play(9600) if isinstance(part, Part)]
@@ -121,7 +121,7 @@ def test_two_rods_on_a_beam_are_heard_together():
     inner = slice(int(np.flatnonzero(wanted)[0]), len(wanted) - 100)
     loudest = np.abs(wanted).max()
     assert loudest > 1e-3
-    # The streamed one comes a sample later.
+    # The streamed signal is one sample late.
     assert np.abs(sound[1:] - wanted[:-1])[inner].max() < 1e-5 * loudest
     alone = instrument.live.advance(480)[0].contacts["normal_force"]
     assert alone.shape[0] == 2
@@ -138,7 +138,7 @@ def test_two_rods_on_a_beam_are_heard_together():
         ("bodies.front.length", 0.9, False),
     ],
 )
-def test_two_rods_go_on_where_their_motion_means_something(key, share, goes_on):
+def test_two_rods_continue_where_their_motion_stays_valid(key, share, goes_on):
     first = playable("", TWO_RODS, {})
     instrument = Instrument(first)
     before = [part for part in instrument.play(4800) if isinstance(part, Part)][-1].chunk
@@ -168,7 +168,7 @@ def test_a_violin_is_bowed_as_a_whole(talk):
 
 
 @pytest.mark.parametrize("case", SYSTEMS)
-def test_every_control_of_a_system_turns_something(case):
+def test_every_control_of_a_system_changes_something(case):
     before = playable(case, None, {})
     assert before.turned.controls
     for control in before.turned.controls:
@@ -183,7 +183,7 @@ def test_every_control_of_a_system_turns_something(case):
         assert [one for one in after.turned.controls if one.key == control.key] == [control]
 
 
-def test_a_belt_takes_another_law_of_friction_on_the_way(talk):
+def test_the_friction_law_of_a_belt_changes_during_a_run(talk):
     assert talk.scene("belt")["values"]["contacts.0.friction.law"] == "static-kinetic"
     talk.play(4800)
     changed = {"contacts.0.friction.law": "coulomb", FRICTION: 0.5}
@@ -201,7 +201,7 @@ def test_a_belt_that_carries_its_block_is_not_at_rest(talk):
     assert set(played.status) == {1}
 
 
-def test_a_record_of_several_contacts_and_probes_opens_as_any(talk, tmp_path):
+def test_a_record_of_several_contacts_and_probes_opens_like_any_other(talk, tmp_path):
     talk.scene("violin")
     talk.play(9600)
     file = tmp_path / "played.nc"
@@ -214,7 +214,7 @@ def test_a_record_of_several_contacts_and_probes_opens_as_any(talk, tmp_path):
     assert st.load_scenario(file).system == st.load_scenario("violin").system
 
 
-def test_it_says_what_goes_on(talk):
+def test_the_present_regime_is_described(talk):
     talk.scene("squeal")
     talk.play(RATE)
     told = talk.until("now")
@@ -223,7 +223,7 @@ def test_it_says_what_goes_on(talk):
 
 
 @pytest.mark.parametrize("tone", [440.0, 2950.0])
-def test_the_words_name_regime_pitch_and_level(tone):
+def test_the_description_has_regime_pitch_and_level(tone):
     interval, count = 1.0 / 24e3, 24_000
     time = interval * np.arange(1, count + 1)
     sliding = np.tile([0.0, 0.0, 1.0], (count, 1))
@@ -262,7 +262,7 @@ KEEP_UP = """(speeds) => speeds.map((speed) => {
 })"""
 
 
-def test_what_is_slower_than_it_sounds_is_shown_slowly_and_that_is_said(browsing):
+def test_slow_systems_are_shown_slowly_with_a_note(browsing):
     page = browsing.open("#case=belt")
     slow, fast = page.evaluate(KEEP_UP, [0.5, 3.0])
     words = "Shown 2.2 times slower than real time, as fast as this machine can, and without sound."
@@ -271,7 +271,7 @@ def test_what_is_slower_than_it_sounds_is_shown_slowly_and_that_is_said(browsing
 
 
 def slow(monkeypatch, *speeds):
-    """Let an instrument seem to play so many seconds in one, one measurement after the other."""
+    """Let the measured speed of an instrument be a given one, measurement by measurement."""
     found = iter(speeds)
     monkeypatch.setattr(Instrument, "speed", lambda self: (self.live.restart(), next(found))[1])
 
@@ -287,7 +287,7 @@ def test_steps_are_longer_where_that_keeps_up_with_the_sound(monkeypatch):
     part, *_ = (part for part in instrument.play(480) if isinstance(part, Part))
     again = st.simulate(*told(text), duration=480 / RATE, sample_rate=RATE, step=1.0 / RATE / 7, probes=())
     assert np.array_equal(again.normal_force.values[:, 0], part.chunk.contacts["normal_force"][0])
-    # So it stays while something is turned, and not for another case.
+    # This remains while values change, but not for another case.
     assert instrument.change(playable("violin", None, {BOW_FORCE: 0.25}), 1)
     assert instrument.live.ratio == 7
     instrument.change(playable("lugre", None, {}), 2)
@@ -302,7 +302,7 @@ def told(text):
 
 
 @pytest.mark.parametrize("speeds", [(1.2,), (0.8, 0.9)])
-def test_steps_are_the_usual_ones_where_they_do_or_none_would(monkeypatch, speeds):
+def test_steps_are_the_usual_ones_if_these_or_none_keep_up(monkeypatch, speeds):
     slow(monkeypatch, *speeds)
     instrument = Instrument(playable("violin", None, {}))
     assert instrument.keep_up() == speeds[0]

@@ -30,12 +30,12 @@ def test_a_tone_is_found_wherever_it_lies(tmp_path, beside):
     assert found == pytest.approx(wanted, abs=0.1 * BIN)
 
 
-def test_of_two_tones_the_stronger_is_named(tmp_path):
+def test_the_stronger_of_two_tones_is_named(tmp_path):
     one, other = sine(433.0), sine(2950.0)
     assert tones(tmp_path, one + 0.8 * other, 0.8 * one + other) == pytest.approx([433.0, 2950.0], abs=0.1 * BIN)
 
 
-def test_no_tone_lies_outside_of_what_can_be_heard(tmp_path):
+def test_no_tone_lies_outside_the_audible_range(tmp_path):
     random = np.random.default_rng(7)
     slow = [np.cumsum(random.normal(size=SIZE)) for _ in range(20)]
     jumps = [np.where(place < TIME, 1.0, 0.0) for place in (0.01, 0.1, 0.17, 0.33)]
@@ -48,5 +48,5 @@ def test_no_tone_lies_outside_of_what_can_be_heard(tmp_path):
 def test_silence_has_no_tone(tmp_path):
     steady = np.full(SIZE, 3.7)
     assert tones(tmp_path, 0.0 * TIME, steady, steady + 1e-7 * sine(500.0)) == [None, None, None]
-    # What is faint and all there is has one.
+    # A faint signal alone has a tone.
     assert tones(tmp_path, 1e-7 * sine(500.0)) == pytest.approx([500.0], abs=0.1 * BIN)

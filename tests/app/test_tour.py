@@ -1,4 +1,4 @@
-"""The tour: every stop shows what its text says; without a browser."""
+"""The tour: every stop shows what its text describes; without a browser."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ BY_TITLE = {stop.title: stop for stop in STOPS}
 
 @dataclass
 class Seen:
-    """What a class sees and hears of a setting in its first seconds: its regimes, its levels and its states."""
+    """Regimes, levels and states of a setting in its first seconds."""
 
     regimes: list[dict] = field(default_factory=list)
     levels: list[float] = field(default_factory=list)
@@ -83,7 +83,7 @@ def test_the_tip_separates():
     assert values(BY_TITLE["Separate"])["slider.angle"] < 0.0 < values(BY_TITLE["Separate"])["drives.0.velocity"]
 
 
-def test_it_squeals_near_the_tone_that_is_named():
+def test_it_squeals_near_the_stated_tone():
     held = values(BY_TITLE["Squeal"])
     assert held["contact.friction.coefficient"] == number("Squeal", r"Friction is ([\d.]+)")
     assert math.degrees(held["slider.angle"]) == pytest.approx(number("Squeal", r"by (\d+) degrees"))
@@ -93,11 +93,11 @@ def test_it_squeals_near_the_tone_that_is_named():
     assert squeals.all("frequency") == pytest.approx([number("Squeal", r"near (\d+) Hz")] * SECONDS, rel=0.05)
     assert least("Squeal", STICKING) > 0.5
     assert all(share > 0.6 for share in map(stripes, squeals.sounds))
-    # A sound that goes on has no stripes.
+    # A continuous sound has no stripes.
     assert stripes(np.random.default_rng(1).normal(size=RATE)) < 0.3
 
 
-def test_it_judders_as_often_as_is_said():
+def test_it_judders_at_the_stated_rate():
     assert values(BY_TITLE["Judder"])["contact.friction.coefficient"] == number("Judder", r"friction of ([\d.]+),")
     assert seen("Judder").all("regime") == ["judder"] * SECONDS
     assert seen("Judder").all("impact_rate") == pytest.approx([number("Judder", r"some (\d+)")] * SECONDS, rel=0.1)
@@ -116,7 +116,7 @@ def test_pressure_raises_the_pitch():
     assert least("Pressure", STICKING, compared=True) > 0.9
 
 
-def test_what_stops_point_at_is_on_the_page():
+def test_targets_of_stops_are_on_the_page():
     page = files("stridula.app").joinpath("page", "index.html").read_text(encoding="utf-8")
     assert [stop.title for stop in STOPS] == ["Stick", "Slip", "Separate", "Squeal", "Judder", "Pressure"]
     for stop in STOPS:
@@ -125,7 +125,7 @@ def test_what_stops_point_at_is_on_the_page():
 
 
 def stripes(sound: np.ndarray) -> float:
-    """Return the share of what is above 1 kHz that the loudest fifth of the columns of a spectrogram have."""
+    """Return the share of the power above 1 kHz in the loudest fifth of the columns of a spectrogram."""
     columns = np.lib.stride_tricks.sliding_window_view(sound, 1024)[::256] * np.hanning(1024)
     power = (np.abs(np.fft.rfft(columns)[:, 1000 * 1024 // RATE :]) ** 2).sum(axis=1)
     return float(np.sort(power)[-len(power) // 5 :].sum() / power.sum())
@@ -136,7 +136,7 @@ def values(stop: TourStop) -> dict:
 
 
 def number(title: str, pattern: str) -> float:
-    """Return a number of the text of a stop."""
+    """Return a number in the text of a stop."""
     found = re.search(pattern, BY_TITLE[title].words)
     assert found is not None
     return float(found[1])

@@ -1,4 +1,4 @@
-"""Where the package asks of what kind one of its own things is, instead of asking the thing itself."""
+"""Type checks of the package on its own classes, in place of methods of these classes."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def asked_kinds(source: str) -> list[tuple[int, str]]:
 
 
 def counts(root: Path = ROOT) -> Counter[str]:
-    """Return how many there are in each file."""
+    """Return their number in each file."""
     files = sorted(path for path in root.rglob("*.py") if "__pycache__" not in path.parts)
     return Counter({str(path.relative_to(root)): len(asked_kinds(path.read_text(encoding="utf-8"))) for path in files})
 

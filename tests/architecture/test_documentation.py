@@ -1,4 +1,4 @@
-"""The documentation: titles of the groups of names, formulas without a network, and no sentences that were riddles."""
+"""The documentation: titles of the groups of names, formulas without a network, and no misunderstood phrases."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = [path for folder in (".", "tutorials") for path in sorted((ROOT / "examples" / folder).glob("*.py"))]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.rst")), *SCRIPTS]
 HELP = ROOT / "src" / "stridula" / "cli" / "commands.py"
-# What readers stumbled over, and what it is called instead.
+# Phrases that readers did not understand, and their replacements.
 RIDDLES = {
     r"\b(gone|goes|go) on from\b": "continue",
     r"\bwhat came of\b": "the result",
@@ -46,7 +46,7 @@ def test_every_group_of_names_has_a_title():
     assert set(settings()["HOMES"]) == set(stridula._HOME)
 
 
-def test_formulas_take_no_network():
+def test_formulas_need_no_network():
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
     assert "sphinx-mathjax-offline" in settings()["extensions"]
     assert any(name.startswith("sphinx-mathjax-offline") for name in extras["docs"])
@@ -67,7 +67,7 @@ def test_the_gallery_has_all_scripts_and_stops_where_one_fails():
 
 
 @pytest.mark.parametrize("page", [*PAGES, HELP], ids=lambda page: page.name)
-def test_pages_and_help_texts_do_not_speak_in_riddles(page):
+def test_pages_and_help_texts_use_plain_phrases(page):
     text = page.read_text(encoding="utf-8")
     found = {riddle: plain for riddle, plain in RIDDLES.items() if re.search(riddle, text, re.MULTILINE)}
     assert not found

@@ -1,4 +1,4 @@
-"""Who imports whom, what a plain import costs, and that what is public is documented."""
+"""Imports between modules, cost of a plain import, documentation of public names."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ import stridula
 ROOT = Path(stridula.__file__).parent
 FILES = sorted(path for path in ROOT.rglob("*.py") if "__pycache__" not in path.parts)
 HEAVY = ("numba", "xarray", "matplotlib", "scipy", "pandas", "pydantic", "typer", "rich", "h5netcdf", "dask")
-# Packages and the modules that own them: of bodies of revolution and of bodies from meshes.
+# Packages and the modules that own them.
 OWNED = {
     "skfem": ["bodies.fourier_elements", "bodies.solid_elements"],
     "meshio": ["bodies.mesh_files", "bodies.solid_files"],
 }
-# Each takes a quarter of a second and more to import, or brings others that do.
+# Each takes a quarter of a second or more to import, or imports others that do.
 SLOW_PARTS = ("scipy.signal", "scipy.stats", "scipy.ndimage", "scipy.optimize", "scipy.interpolate")
 
 
@@ -58,7 +58,7 @@ def roots(names: set[str]) -> set[str]:
 
 
 def messages_read(source: str) -> list[int]:
-    """Return the lines on which a handler looks into the text of an exception, but for a cut of its spaces."""
+    """Return the lines on which a handler parses the text of an exception, other than stripping spaces."""
     found = []
     for handler in ast.walk(ast.parse(source)):
         for node in ast.walk(handler) if isinstance(handler, ast.ExceptHandler) and handler.name else ():
@@ -70,25 +70,25 @@ def messages_read(source: str) -> list[int]:
     return found
 
 
-# The message of TOML's parser has no parts: where the end of the document is, is told in it.
+# The exception of TOML's parser has no fields: only its text has the end of the document.
 READS_MESSAGES = {"scenarios.read"}
 
 
 @pytest.mark.parametrize("path", FILES, ids=[module_of(path) or "stridula" for path in FILES])
-def test_nothing_reads_a_message(path):
+def test_no_code_parses_messages(path):
     if module_of(path) not in READS_MESSAGES:
         assert not messages_read(path.read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("use", ["str(error).replace('a', 'b')", "'got None' in str(error)", "str(error)[0]"])
-def test_message_harness_sees_one_that_is_read(use):
+def test_message_harness_finds_parsing_of_a_message(use):
     """Negative control."""
     assert messages_read(f"try:\n    f()\nexcept ValueError as error:\n    g({use})")
     assert not messages_read("try:\n    f()\nexcept ValueError as error:\n    g(str(error), error.argument)")
 
 
 def test_arguments_are_refused_with_their_name_value_and_range():
-    """A ValueError of another kind has no argument: a file or a scenario as a whole."""
+    """Other kinds of ValueError have no argument: they are about a whole file or scenario."""
     left = [
         f"{module_of(path)}:{number}"
         for path in FILES
@@ -120,7 +120,7 @@ def test_kernels_import_only_numpy_numba_and_the_standard_library(path):
 
 @pytest.mark.parametrize("path", FILES, ids=IDS)
 def test_matplotlib_is_for_figures_only(path):
-    """In plot, in the figures of papers and verification, and where the command line asks for picture formats."""
+    """In plot, in the figures of papers and verification, and for the picture formats of the command line."""
     module = module_of(path)
     allowed = re.fullmatch(r"plot(\..*)?|papers\..*figures.*|verification\.figures|cli\.outputs", module)
     if not allowed:
@@ -168,7 +168,7 @@ def test_descriptions_need_no_compiler_and_no_records():
     assert not loaded_after(code) & {"numba", "xarray", "matplotlib", *OWNED}
 
 
-def test_a_body_of_revolution_takes_its_elements_when_it_is_asked_for_modes():
+def test_a_body_of_revolution_loads_its_elements_when_modes_are_requested():
     code = (
         "import stridula as st; b = st.AxisymmetricBody("
         "st.RectangleProfile({'disc': ((0.1, 0.2), (0.0, 0.01))}), st.Material(2e11, 7800.0), 2e3, 'inner')"
@@ -204,7 +204,7 @@ def test_public_names_are_listed_once_and_resolve():
 
 
 def modules_that_docs_name() -> set[str]:
-    """Return the modules of the API page, and what code has that is not a public name."""
+    """Return the modules of the API page, and names in its code that are not public."""
     docs = Path(__file__).resolve().parents[2] / "docs"
     code = "".join(page.read_text(encoding="utf-8") for page in (*docs.glob("*.rst"), docs.parent / "README.md"))
     names = set(re.findall(r"\bst\.([a-z_]+(?:\.\w+)*)", code))
@@ -213,13 +213,13 @@ def modules_that_docs_name() -> set[str]:
 
 
 @pytest.mark.parametrize("name", sorted(modules_that_docs_name()))
-def test_modules_that_docs_name_are_there_in_a_fresh_interpreter(name):
+def test_modules_named_in_the_docs_exist_in_a_fresh_interpreter(name):
     code = f"import stridula as st; st.{name}; assert {name.partition('.')[0]!r} in dir(st)"
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
-def test_what_the_api_page_names_is_there_after_a_plain_import():
-    """Folders and modules that names come from are attributes, and have these names, too."""
+def test_names_of_the_api_page_exist_after_a_plain_import():
+    """Packages and modules of names are attributes, and also have these names."""
     code = "import stridula as st; print(*(f'{name}:{hasattr(st, name)}' for name in dir(st)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     found = dict(one.split(":") for one in done.stdout.split())
@@ -237,7 +237,7 @@ def test_docs_name_modules():
 
 @pytest.mark.parametrize(("name", "thing"), public(), ids=[name for name, _ in public()])
 def test_public_names_are_documented(name, thing):
-    """Own docstring, not the signature that dataclass writes; and one for each public method and property."""
+    """Own docstring, not the signature from dataclass; and one for each public method and property."""
     if not (inspect.isclass(thing) or inspect.isroutine(thing)):
         return
     text = inspect.getdoc(thing) or ""

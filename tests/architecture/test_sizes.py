@@ -16,7 +16,7 @@ COMMANDS = "commands.py"
 
 
 def too_large(text: str) -> list[str]:
-    """Functions with more lines of code, or more arguments that can go without a name, than one can take in."""
+    """Functions with too many lines of code, or too many arguments that are not keyword-only."""
     found = []
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
@@ -34,6 +34,6 @@ def test_no_function_is_too_large(path):
 
 
 @pytest.mark.parametrize("text", [f"def f({', '.join('abcdefghijklm')}): pass", "def f():\n" + "    g()\n" * 91])
-def test_harness_sees_one_that_is(text):
+def test_harness_finds_a_function_that_is_too_large(text):
     """Negative control."""
     assert too_large(text)

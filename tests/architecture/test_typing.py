@@ -1,4 +1,4 @@
-"""Types for users: the stubs name what is imported on first use, and a script of theirs is checked strictly."""
+"""Types for users: stubs list names imported on first use, and a user's script is checked strictly."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def homes_in_stub(text: str) -> dict[str, str]:
 
 
 def homes_at_run_time(package: str) -> dict[str, str]:
-    """Return the same of what is imported on first use."""
+    """Return the same for names imported on first use."""
     if package != "stridula":
         found = import_module(package)
         at_once = [name for name in found.__all__ if name not in found._HOME]
@@ -45,7 +45,7 @@ def homes_at_run_time(package: str) -> dict[str, str]:
 
 
 def checked_strictly(path: Path, folder: Path) -> str:
-    """Return what mypy says of a script of users'."""
+    """Return the output of mypy for a user's script."""
     command = [sys.executable, "-m", "mypy", "--strict", "--config-file=", "--follow-imports=silent", str(path)]
     done = subprocess.run(
         [*command, "--cache-dir", str(folder)],
@@ -60,7 +60,7 @@ def checked_strictly(path: Path, folder: Path) -> str:
 
 @pytest.fixture(scope="module")
 def cache(tmp_path_factory):
-    """What mypy found of the package and of others, for all tests here."""
+    """Cache of mypy for all tests here."""
     return tmp_path_factory.mktemp("mypy")
 
 
@@ -70,15 +70,15 @@ def test_stubs_name_what_is_imported_on_first_use(package):
     assert homes_in_stub(stub.read_text(encoding="utf-8")) == homes_at_run_time(package)
 
 
-def test_kinds_of_results_are_told_for_every_argument():
-    """Options that do not change the kind are listed once more, for those that do are told one by one."""
+def test_types_of_results_are_known_for_every_argument():
+    """Options that do not change the type are listed again, since those that do have one overload each."""
     given = inspect.signature(stridula.simulate_many).parameters.values()
     named = {one.name for one in given if one.kind is inspect.Parameter.KEYWORD_ONLY} - {"errors", "labelled"}
     assert named == set(Options.__annotations__)
 
 
 def test_every_package_that_imports_on_first_use_has_a_stub():
-    """Type checkers take any name of a module with a `__getattr__`, whether it is there or not."""
+    """Type checkers accept any name of a module with a `__getattr__`, even a missing one."""
     lazy = {
         path.with_suffix(".pyi")
         for path in ROOT.rglob("__init__.py")
@@ -88,7 +88,7 @@ def test_every_package_that_imports_on_first_use_has_a_stub():
     assert len(lazy) == len(LAZY)
 
 
-def test_type_checkers_are_told_that_there_are_types():
+def test_the_package_is_marked_as_typed():
     assert (ROOT / "py.typed").is_file()
 
 

@@ -1,4 +1,4 @@
-"""Every benchmark runs in its short form, in which its sides agree; one whose sides do not says so in a line."""
+"""Every benchmark runs in its short form, in which its sides agree; disagreement is reported in one line."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ FOLDER = Path(__file__).resolve().parents[2] / "benchmarks"
 BENCHMARKS = sorted(
     path for path in FOLDER.glob("*.py") if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
 )
-# Siconos runs under a Python of its own, which has not got the package; the suite is all of its sections once more.
+# Siconos runs under another Python without the package; the suite repeats all sections.
 APART = ("siconos_march.py", "siconos_cones.py", "suite.py")
 
 
 def short(path: Path, **environment: str) -> subprocess.CompletedProcess[str]:
     """Run the short form of a benchmark."""
-    # No card is needed: numba has a simulator of one, which is chosen when it is imported.
+    # No card is needed: numba has a simulator, which is selected on import.
     own = {"NUMBA_ENABLE_CUDASIM": "1"} if path.name == "gpu.py" else {}
     package = {"PYTHONPATH": str(Path(stridula.__file__).parents[1])}
     return subprocess.run(
@@ -42,7 +42,7 @@ def test_short_form(path):
 
 @pytest.fixture
 def copied(tmp_path):
-    """Return a copy of the benchmarks in which something can be wrong, and what makes it so."""
+    """Return a copy of the benchmarks, and a function that introduces an error."""
     shutil.copytree(FOLDER, tmp_path / "benchmarks", ignore=shutil.ignore_patterns("__pycache__"))
 
     def wrong(name: str, right: str, other: str) -> Path:
@@ -77,7 +77,7 @@ def test_another_step_in_c_is_refused(copied, right, other, quantity):
     assert complaint(copied("step.c", right, other).with_name("against_c.py")).startswith(quantity)
 
 
-# Marches a brake whose points stick by the package and by each source in C, and says how they agree.
+# Marches a brake whose points stick by the package and by each source in C, and prints their agreement.
 STICKING = """
 import sys, tempfile
 from pathlib import Path
@@ -105,7 +105,7 @@ WRONG_BRAKES = (
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not installed, so there is no C to compare with")
 def test_a_brake_that_sticks_agrees_with_c_and_another_c_is_refused(copied):
-    """Of the distance from where a point stuck, too, which only such a brake knows."""
+    """Also the distance from the anchor of a sticking point, which only such a brake has."""
     given = FOLDER / "brake.c"
     sources = [given]
     for number, (right, other, _) in enumerate(WRONG_BRAKES):

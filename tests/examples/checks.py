@@ -1,4 +1,4 @@
-"""What pages take as given, and what their code must come to."""
+"""Files that pages assume, and checks of the results of their code."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ SCENARIOS = ROOT / "docs" / "scenarios.rst"
 
 
 def pad(file: Path, first: str, second: str) -> None:
-    """Write the body that pages read from a file, with two points."""
+    """Write the body, with two points, that pages read from a file."""
     stiffness = np.kron([[1e6, -1e6], [-1e6, 1.1e6]], np.eye(2))
     st.ReducedBody(0.1 * np.eye(4), stiffness, {first: (0, 1), second: (2, 3)}).save(file)
 
 
 def record(*names: str) -> None:
-    """Write records that pages have from elsewhere."""
+    """Write the records that pages assume."""
     run = st.load_scenario("squeal", {"duration": "20 ms"}).simulate()
     for name in names:
         st.save(run, name)
 
 
-# What a reader has in the folder before.
+# Files assumed in the folder of a reader.
 GIVEN: dict[str, Callable[[], object]] = {
     "README.md": lambda: record("other.nc"),
     "command-line.rst": lambda: record("before.nc", "after.nc"),
@@ -44,7 +44,7 @@ GIVEN: dict[str, Callable[[], object]] = {
 
 
 def check_readme(names: Mapping[str, Any], printed: str) -> None:
-    """The load, by the slope of the track that it bends, adds a mode that grows."""
+    """The load adds a growing mode, through the slope of the bent track."""
     grows = unstable_frequencies(names["system"], sense=1.0).size + 1
     assert f"\n{grows} modes grow\n" in printed
     assert len(names["forces"]) == 4
@@ -64,26 +64,26 @@ def check_python(names: Mapping[str, Any], printed: str) -> None:
     assert len(names["shares"]) == 20
     assert names["shares"][0] > names["shares"][-1]
     assert names["whole"].sizes["time"] == 2 * names["second"].sizes["time"]
-    # The last run is watched to its end.
+    # Progress of the last run is shown to its end.
     assert printed.rstrip().endswith(" s of 1 s")
 
 
 def check_start(names: Mapping[str, Any], printed: str) -> None:
-    """More friction makes it squeal, and linear theory has the mode that is named."""
+    """More friction makes it squeal, and linear theory has the stated mode."""
     assert re.search(r"modes grow, one of them at 28\d\d Hz", printed)
     assert re.findall(r"^(0\.8|1\.1) squeal$", printed, re.MULTILINE) == ["0.8", "1.1"]
     assert names["found"].sizes == {"friction": 4, "angle": 3}
 
 
 def check_coming_from(names: Mapping[str, Any], printed: str) -> None:
-    """The rig has its one growing mode; a chain of springs comes back from its file."""
+    """The rig has one growing mode; a chain of springs is read back from its file."""
     assert re.findall(r"^(\d+) Hz, real part", printed, re.MULTILINE) == ["2273"]
     np.testing.assert_allclose(names["body"].modes().angular_frequency, [100.0, 200.0])
     assert names["run"].attrs["ended"] == "finished"
 
 
 def check_maps(names: Mapping[str, Any], printed: str) -> None:
-    """The way of 50 ms falls by 2.8 mm a unit of friction, from 2.1 mm at 0.4."""
+    """The travel in 50 ms falls by 2.8 mm per unit of friction, from 2.1 mm at 0.4."""
     assert 0.877 < float(names["onset"].value) < 0.878
     assert int(names["counts"].compared) == 12
     assert names["best"].met.values.tolist() == [True, True]
@@ -92,7 +92,7 @@ def check_maps(names: Mapping[str, Any], printed: str) -> None:
 
 
 def check_measures(names: Mapping[str, Any], printed: str) -> None:
-    """Each stop that is complete ends, and between stops it squeals."""
+    """Each complete stop ends, and between stops it squeals."""
     assert len(names["lengths"]) > 0
     assert (names["lengths"] > 0.0).all()
     assert names["squeal"] > 1e3
@@ -109,13 +109,13 @@ def check_sound(names: Mapping[str, Any], printed: str) -> None:
 
 
 def check_surveys(names: Mapping[str, Any], printed: str) -> None:
-    """The mode grows in time as theory says, but for the way that the contact point travels meanwhile."""
+    """The mode grows in time as in theory, up to the effect of the travel of the contact point."""
     this = names["this"]
     assert float(this.seen_growth_rate) == pytest.approx(float(this.growth_rate), rel=0.03)
     assert names["found"].verdict.sel(friction=0.6, angle=-60.0) == "stable"
 
 
-# One number at least where it says more than that it runs.
+# Checks of at least one number, for pages that print any.
 CHECKS: dict[str, Callable[[Mapping[str, Any], str], None]] = {
     "README.md": check_readme,
     "maps.rst": check_maps,

@@ -1,4 +1,4 @@
-"""Modes of sliding that grow, written from the equations, without the package's linear theory."""
+"""Growing modes of sliding, from the equations, without the package's linear theory."""
 
 from __future__ import annotations
 

@@ -1,10 +1,12 @@
-"""Pages of the documentation as their readers take them: blocks of code in their order, and commands.
+"""Pages of the documentation as readers run them: blocks of code in their order, and commands.
 
-What would take long is made short by rule, the same for all pages: `shorter`, `few` and `smaller`.
+Long runs are shortened by rules common to all pages: `shorter`, `few` and `smaller`.
 """
 
 from __future__ import annotations
 
+import ast
+import builtins
 import re
 import shlex
 import textwrap
@@ -22,7 +24,7 @@ BLOCK = {
 
 
 def blocks(page: Path, *languages: str) -> list[tuple[str, str]]:
-    """Return language and text of each block in some languages; a file of Python that is shown whole is one, too."""
+    """Return language and text of each block in some languages, including Python files shown whole."""
     found = []
     for block in re.finditer(BLOCK[page.suffix], page.read_text(encoding="utf-8"), re.MULTILINE):
         words = block.groupdict()
@@ -34,13 +36,13 @@ def blocks(page: Path, *languages: str) -> list[tuple[str, str]]:
 
 
 def commands(page: Path) -> list[list[str]]:
-    """Return the words of each command, without the folder that it lies in."""
+    """Return the words of each command, without its folder."""
     lines = [line.removeprefix("$ ") for _, text in blocks(page, "console") for line in text.splitlines() if line]
     return [shlex.split(line.removeprefix(".venv/bin/"), comments=True) for line in lines]
 
 
 def shorter(code: str) -> str:
-    """Return code in which a run of half a minute or more takes a hundredth of that."""
+    """Return code with runs of half a minute or more shortened to a hundredth."""
 
     def hundredth(found: re.Match[str]) -> str:
         return f"{found[1]}{float(found[2]) / 100.0 if float(found[2]) >= 30.0 else found[2]}"
@@ -49,12 +51,44 @@ def shorter(code: str) -> str:
 
 
 def few(keys: Mapping[str, Sequence[Any]]) -> dict[str, Sequence[Any]]:
-    """Return the two ends of each key of a grid that has ten values and more."""
+    """Return a grid with keys of ten or more values reduced to their two ends."""
     return {key: values if len(values) < 10 else values[:: len(values) - 1] for key, values in keys.items()}
 
 
 def smaller(words: list[str]) -> list[str]:
-    """Return a command that varies three values of a key, takes four samples and films a tenth of the pictures."""
-    varied = [re.sub(r"^(\w+=.+:.+:)\d+$", r"\g<1>3", word) for word in words]
-    sampled = ["4" if before == "--samples" else word for before, word in zip(["", *varied], varied, strict=False)]
-    return [*sampled, "--slowdown", "100"] if "animate" in sampled else sampled
+    """Return a command that takes less time.
+
+    It varies two values of a key, takes four samples, films few pictures early in a run, and ends a run that is not
+    kept after 20 ms.
+    """
+    varied = [re.sub(r"^([\w.]+=.+:.+:)\d+$", r"\g<1>2", word) for word in words]
+    changed = {"--samples": "4"}
+    is_film, is_run = (verb in words for verb in ("animate", "run"))
+    if is_film:
+        changed["--from"] = "1 ms"
+    found = [changed.get(before, word) for before, word in zip(["", *varied], varied, strict=False)]
+    is_short = is_run and not {"--out", "-o", "--duration"} & set(words)
+    return [*found, *["--slowdown", "100"] * is_film, *["--duration", "20 ms"] * is_short]
+
+
+def own(page: Path) -> list[tuple[str, str]]:
+    """Return code and texts of a page; an example that it shows first runs elsewhere unless later code needs it."""
+    (first, *later) = found = blocks(page, "python", "text")
+    examples = [path.read_text(encoding="utf-8") for path in (ROOT / "examples").glob("*.py")]
+    return later if first[1] in examples and not missing([text for kind, text in later if kind == "python"]) else found
+
+
+def missing(code: Sequence[str]) -> set[str]:
+    """Return the names that code uses without having them."""
+    nodes = [node for text in code for node in ast.walk(ast.parse(text))]
+    names = [node for node in nodes if isinstance(node, ast.Name)]
+    given = {node.id for node in names if isinstance(node.ctx, ast.Store)}
+    given |= {node.name for node in nodes if isinstance(node, ast.FunctionDef)}
+    given |= {node.arg for node in nodes if isinstance(node, ast.arg)}
+    given |= {
+        alias.asname or alias.name
+        for node in nodes
+        if isinstance(node, ast.Import | ast.ImportFrom)
+        for alias in node.names
+    }
+    return {node.id for node in names} - given - set(dir(builtins))

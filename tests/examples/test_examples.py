@@ -1,4 +1,4 @@
-"""Every example runs, and one number of its output is what it must be; the README shows the shortest one."""
+"""Every example runs, and at least one number of its output is checked; the README shows the shortest one."""
 
 from __future__ import annotations
 
@@ -74,12 +74,12 @@ def check_mass_on_a_belt(names: Mapping[str, Any], printed: str, folder: Path) -
 
 
 def check_cut_off_modes(names: Mapping[str, Any], printed: str, folder: Path) -> None:
-    """Static answers of the modes left out give the block its equilibrium and its squeal; a slender beam takes harm."""
+    """Static flexibility of modes left out restores equilibrium and squeal of the block, and harms a slender beam."""
     forces, frequency, growth = names["truth"]
     for (cutoff, static), (pressed, squeal, grows) in names["found"].items():
         near = np.abs(pressed - forces).max() < 1e-9 * forces.max()
         assert near == static, cutoff
-        # What is left of the modes is their inertia, (squeal / cutoff)² of their yielding.
+        # The error is the inertia of these modes, (squeal / cutoff)² of their flexibility.
         assert (abs(squeal / frequency - 1.0) < 0.02 and abs(grows / growth - 1.0) < 0.05) == static, cutoff
     lines = re.findall(r"judder, modes beyond (\S+) kHz (.+): off the track (\S+) \+- (\S+)", printed)
     shares = {(float(cutoff), words): (float(share), float(half)) for cutoff, words, share, half in lines}
@@ -90,7 +90,7 @@ def check_cut_off_modes(names: Mapping[str, Any], printed: str, folder: Path) ->
 
 
 def check_brake_pad(names: Mapping[str, Any], printed: str, folder: Path) -> None:
-    """More friction lets modes of disc and pad grow; the run's books close, and forces are about those of theory."""
+    """More friction lets modes of disc and pad grow; the ledger closes, and forces are about those of theory."""
     growing = re.findall(r"^friction (\S+): .*growing modes \[Hz\]: (.+)$", printed, re.MULTILINE)
     assert [friction for friction, _ in growing] == ["0.2", "0.4", "0.6"]
     assert growing[0][1] == "none"
@@ -100,7 +100,7 @@ def check_brake_pad(names: Mapping[str, Any], printed: str, folder: Path) -> Non
     largest = max(float(np.abs(run[term]).max()) for term in ("drive_work", "contact_work", "kinetic_and_elastic"))
     assert float(np.abs(run.ledger_residual).max()) < 1e-11 * largest
     assert 0.0 < float(run.friction_loss[-1]) < 1.01 * float(run.drive_work[-1])
-    # Less than 600 N: springs carry some. About equilibrium the pad's mass has given back its momentum on the whole.
+    # Less than 600 N: springs carry some. On average the momentum of the pad does not change.
     pressed = float(names["theory"].normal_force.sum())
     assert 500.0 < pressed < 600.0
     assert float(run.normal_force.sum("contact").mean()) == pytest.approx(pressed, rel=0.05)
@@ -110,7 +110,7 @@ def check_brake_pad(names: Mapping[str, Any], printed: str, folder: Path) -> Non
 
 
 def check_brake(names: Mapping[str, Any], printed: str, folder: Path) -> None:
-    """More friction lets modes grow, the one that grows most fills the run, and both pads carry their load."""
+    """More friction lets modes grow, the fastest one dominates the run, and both pads carry their load."""
     growing = re.findall(r"^friction (\S+): sliding, growing below 7 kHz: (.+)$", printed, re.MULTILINE)
     assert [friction for friction, _ in growing] == ["0.3", "0.5"]
     assert growing[0][1] == "none"
@@ -122,16 +122,16 @@ def check_brake(names: Mapping[str, Any], printed: str, folder: Path) -> None:
     early, late = (float(np.abs(run.velocity[part]).max()) for part in (slice(None, 50), slice(-500, None)))
     assert late > 100.0 * early
     for one, side in zip(found, (1.0, -1.0), strict=True):
-        # Springs carry a little; the pad's mass gives back its momentum on the whole.
+        # Springs carry a little; on average the momentum of the pad does not change.
         assert side * float(one.force.sel(axis="y").mean()) == pytest.approx(2000.0, rel=0.05)
         assert float(one.closed_area.max()) <= float(one.area.sum()) * (1.0 + 1e-12)
     assert (folder / "brake.png").read_bytes().startswith(b"\x89PNG")
 
 
 def check_pin_on_disc(names: Mapping[str, Any], printed: str, folder: Path) -> None:
-    """One mode grows, in one sense of turning, near the published 2215 Hz; in time it grows as theory has it.
+    """One mode grows, in one sense of turning, near the published 2215 Hz; in time it grows as in theory.
 
-    The frequency is held to where it converges with the cutoffs, 2273 Hz, 2.6 % above the published one.
+    The frequency is compared with its limit for high cutoffs, 2273 Hz, 2.6 % above the published one.
     """
     found = names["found"]
     assert {friction: len(modes) for friction, modes in found.items()} == {0.05: 0, 0.1: 1, 0.152: 1, 0.2: 1, 0.3: 1}
@@ -139,7 +139,7 @@ def check_pin_on_disc(names: Mapping[str, Any], printed: str, folder: Path) -> N
     assert frequency == pytest.approx(2273.0, rel=2e-3)
     assert growth == pytest.approx(431.0, rel=0.02)
     assert not names["backwards"]
-    # A prototype by other elements, a Craig-Bampton pin and null spaces has 2268.7 Hz.
+    # A prototype with other elements, a Craig-Bampton pin and null spaces gives 2268.7 Hz.
     assert frequency == pytest.approx(2268.7, rel=5e-3)
     run = names["run"]
     motion = run.velocity.values[:, 0]
@@ -153,7 +153,7 @@ def check_pin_on_disc(names: Mapping[str, Any], printed: str, folder: Path) -> N
 
 
 def check_wine_glass(names: Mapping[str, Any], printed: str, folder: Path) -> None:
-    """It sings just below the mode of two waves, which is in space still while a point of the glass sees it beat."""
+    """It sings just below the mode of two waves, which stands in space and beats at a point of the glass."""
     mode = float(re.search(r"2 waves: (\d+) Hz", printed)[1])
     assert 0.995 * mode < names["tone"] < mode + 0.5
     assert 0.1 < -float(names["onset"].value) < 0.12
@@ -173,7 +173,7 @@ def check_railway_wheel(names: Mapping[str, Any], printed: str, folder: Path) ->
 
 
 def check_violin(names: Mapping[str, Any], printed: str, folder: Path) -> None:
-    """Slips as theory has them; Schelleng's maximal force to within a step of the forces, and one half more."""
+    """Slips as in theory; Schelleng's maximal force to within a step of the forces, and one half more."""
     assert printed.startswith("Helmholtz motion at 195.4 Hz")
     assert names["slip"] == pytest.approx(-0.2 * 0.88 / 0.12, rel=0.02)
     step = float(names["SHARES"][1] / names["SHARES"][0])

@@ -1,4 +1,4 @@
-"""All code and all commands that the documentation shows, page by page, each in an empty folder."""
+"""All code and commands in the documentation, page by page, each in an empty folder."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ import stridula as st
 from stridula import studies
 
 from .checks import CHECKS, GIVEN, SCENARIOS, WRITTEN, pad
-from .pages import PAGES, ROOT, blocks, commands, few, shorter, smaller
+from .pages import PAGES, ROOT, blocks, commands, few, own, shorter, smaller
 
 
 @pytest.fixture
 def page(request, tmp_path, monkeypatch):
-    """A page, in a folder that has nothing but what the page takes as given."""
+    """A page, in a folder with only the files that it assumes."""
     monkeypatch.chdir(tmp_path)
     GIVEN.get(request.param.name, lambda: None)()
     return request.param
@@ -39,21 +39,25 @@ def test_no_code_is_missed(page):
     assert len(blocks(page, "python")) == len(written)
 
 
-def test_rules_that_make_short_leave_the_rest():
+def test_shortening_rules_leave_the_rest():
     assert shorter("f(duration=60.0, step=60.0, duration=20.0)") == "f(duration=0.6, step=60.0, duration=20.0)"
     assert few({"a": [*range(12)], "b": ["x", "y", "z"]}) == {"a": [0, 11], "b": ["x", "y", "z"]}
     words = ["sweep", "--vary", "a=1deg:2deg:40", "--vary", "b=1:2:log", "--samples", "64", "--duration", "40"]
-    assert smaller(words) == ["sweep", "--vary", "a=1deg:2deg:3", *words[3:6], "4", *words[7:]]
+    assert smaller(words) == ["sweep", "--vary", "a=1deg:2deg:2", *words[3:6], "4", *words[7:]]
+    film = ["animate", "case", "--from", "1 s", "--out", "a.gif"]
+    assert smaller(film) == ["animate", "case", "--from", "1 ms", "--out", "a.gif", "--slowdown", "100"]
+    assert smaller(["run", "case", "--plot", "a.png"])[4:] == ["--duration", "20 ms"]
+    assert len(smaller(["run", "case", "--out", "a.nc"])) == 4
 
 
 @of_pages("python")
 def test_code(page, tmp_path, monkeypatch, capsys):
-    """Text that follows code is what it prints."""
+    """Text after code is its output."""
     grid = studies.Grid
     monkeypatch.setattr(studies, "Grid", lambda keys: grid(few(keys)))
     names: dict[str, Any] = {}
     printed = [""]
-    for language, text in blocks(page, "python", "text"):
+    for language, text in own(page):
         if language == "text":
             assert printed[-1].strip() == text.strip()
         else:
@@ -68,7 +72,7 @@ def test_code(page, tmp_path, monkeypatch, capsys):
 
 @of_pages("console")
 def test_commands(page, stridula, monkeypatch):
-    """Each is good; two records that differ, too. The page that one plays on is not waited for."""
+    """Each succeeds, including a comparison of two different records. `stridula app` is not waited for."""
     monkeypatch.setattr("stridula.app.serve.serve", lambda *words: None)
     targets = (ROOT / "Makefile").read_text(encoding="utf-8")
     for words in commands(page):

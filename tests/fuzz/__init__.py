@@ -1,1 +1,1 @@
-"""Inputs that are wrong on purpose: what comes of each is a result, or a refusal in one line."""
+"""Deliberately wrong inputs: each gives a result, or a refusal in one line."""

@@ -1,4 +1,4 @@
-"""Run inputs of every kind in processes of their own, with limits of time and memory, and count what comes of them."""
+"""Run inputs of every kind in separate processes, with limits of time and memory, and count the outcomes."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ from multiprocessing.connection import Connection, wait
 from types import ModuleType
 from typing import Any
 
-# What one input may take [s], and what its process may take beyond what it has at the start [bytes].
+# Time limit of one input [s], and memory limit of its process beyond that at the start [bytes].
 LIMIT, MEMORY = 20.0, 4 * 1024**3
 WRONG = ("crashed", "hung", "traceback")
-# Wrong inputs of a kind that are told in full.
+# Largest number of failures of a kind that are printed in full.
 TOLD = 40
 FORK = multiprocessing.get_context("fork")
 
 
 def modules() -> dict[str, ModuleType]:
-    """Return the kinds of inputs there are: every module here that has any."""
+    """Return the kinds of inputs: every module here that has inputs."""
     names = [found.name for found in pkgutil.iter_modules([os.path.dirname(__file__)]) if found.name != "__main__"]
     every = {name: import_module(f"{__package__}.{name}") for name in names}
     return {name: module for name, module in every.items() if hasattr(module, "inputs")}
 
 
 class Worker:
-    """A process that takes one input after another."""
+    """A process that runs one input after another."""
 
     def __init__(self, kind: ModuleType) -> None:
         self.pipe, theirs = FORK.Pipe()
@@ -46,12 +46,12 @@ class Worker:
         self.number, self.given, self.since = -1, None, 0.0
 
     def take(self, number: int, given: Any) -> None:
-        """Take the next input."""
+        """Send the next input."""
         self.number, self.given, self.since = number, given, time.monotonic()
         self.pipe.send(given)
 
     def end(self) -> None:
-        """End the process, whatever it does."""
+        """Kill the process."""
         self.process.kill()
         self.process.join()
         self.pipe.close()
@@ -80,7 +80,7 @@ def _serve(kind: ModuleType, pipe: Connection) -> None:
 
 
 def counted(name: str, kind: ModuleType, seed: int, count: int, workers: int) -> tuple[Counter[str], int]:
-    """Return what came of the inputs of a kind, and the most memory that a process had [bytes]; tell what is wrong."""
+    """Return counts of the outcomes of a kind, and the peak memory of a process [bytes]; print failures."""
     counts: Counter[str] = Counter()
     given, peak = enumerate(kind.inputs(seed, count)), 0
     busy: list[Worker] = []
@@ -114,7 +114,7 @@ def counted(name: str, kind: ModuleType, seed: int, count: int, workers: int) ->
 
 
 def _answer(one: Worker) -> tuple[str, str, int] | None:
-    """Return what came of an input, None if it is not known yet."""
+    """Return the outcome of an input, None if it is not known yet."""
     try:
         if one.pipe.poll():
             found: tuple[str, str, int] = one.pipe.recv()
@@ -133,7 +133,7 @@ def repeated(kind: ModuleType, seed: int, number: int) -> None:
 
 
 def lines(kinds: dict[str, ModuleType], seed: int, count: int, workers: int) -> Iterator[tuple[str, bool]]:
-    """Return a line of counts for each kind, and whether all was well."""
+    """Return a line of counts for each kind, and whether there was no failure."""
     for name, kind in kinds.items():
         began = time.monotonic()
         counts, peak = counted(name, kind, seed, count, workers)
@@ -146,7 +146,7 @@ def lines(kinds: dict[str, ModuleType], seed: int, count: int, workers: int) -> 
 
 
 def main() -> int:
-    """Run what the command line asks for."""
+    """Run the command line."""
     parser = argparse.ArgumentParser(prog="python -m tests.fuzz", description=__doc__)
     parser.add_argument("--seed", type=int, default=0, help="other inputs for another number")
     parser.add_argument("--count", type=int, default=10_000, help="inputs in all, as many of each kind")
@@ -160,7 +160,7 @@ def main() -> int:
             parser.error("--number must go with --kind")
         repeated(kinds[asked.kind], asked.seed, asked.number)
         return 0
-    # Compiled, imported and cached once, before the processes part.
+    # Compiled, imported and cached once, before processes fork.
     for kind in kinds.values():
         kind.check(next(iter(kind.inputs(asked.seed, 1))))
     well = True

@@ -86,7 +86,7 @@ def _column(name: str, label: tuple[int, int], held: Sequence[tuple[tuple[int, i
 
 
 def _nastran(value: float, width: int) -> str:
-    """Return a number in as many digits as fit, without the letter of its exponent where there is little room."""
+    """Return a number with as many digits as fit, without the letter of its exponent in short fields."""
     if not np.isfinite(value):
         return str(value).rjust(width)
     for digits in range(16, -1, -1):
@@ -110,7 +110,7 @@ def output4(
     order : str
         Order of bytes of a binary file, ``<`` or ``>``; text if empty.
     strings : str
-        How what is not zero is told: full columns if empty, ``short`` or ``long`` strings.
+        Form of nonzero entries: full columns if empty, ``short`` or ``long`` strings.
     kind : int
         Type of the numbers, single (1) or double precision (2).
     form : int
@@ -136,7 +136,7 @@ def output4(
                 )
                 pieces.append(_record(order, struct.pack(f"{order}3i", number, first, len(body) // 4) + body))
                 continue
-            # Of full columns a text counts the numbers.
+            # For full columns a text file has the count of numbers.
             words = sum(len(begin) + (1 if first else kind) * values.size for begin, values in parts)
             pieces.append(f"{number:8d}{first:8d}{words:8d}\n".encode())
             for begin, values in parts:
@@ -146,7 +146,7 @@ def output4(
 
 
 def _strings(column: Array, strings: str, kind: int) -> tuple[int, list[tuple[list[int], Array]]]:
-    """Return the first row of a full column, 0 of strings, and what each string begins with and holds."""
+    """Return the first row of a full column, or 0 for strings, and the header and content of each string."""
     held = np.flatnonzero(column)
     if not strings:
         return int(held[0]) + 1, [([], column[held[0] : held[-1] + 1])]

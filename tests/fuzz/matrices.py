@@ -16,7 +16,7 @@ import stridula as st
 
 from . import formats
 from .numbers import flipped, number
-from .verdicts import folder, verdict
+from .outcomes import folder, outcome
 
 Array = Any
 Given = tuple[dict[str, bytes], dict[str, Any]]
@@ -38,7 +38,7 @@ def inputs(seed: int, count: int) -> Iterator[Given]:
 
 
 def check(given: Given) -> str:
-    """Return what comes of files of matrices."""
+    """Return the outcome of reading files of matrices."""
     files, arguments = given
     with folder():
         for name, content in files.items():
@@ -50,11 +50,11 @@ def check(given: Given) -> str:
             for point in body.points:
                 body.trace(point)
 
-        return verdict(read)
+        return outcome(read)
 
 
 def _matrix(dice: random.Random, stiff: float) -> Array:
-    """Return a symmetric positive definite matrix, at times with a number that is none of its own."""
+    """Return a symmetric positive definite matrix, sometimes with a wrong number."""
     random_state = np.random.default_rng(dice.randrange(2**32))
     root = random_state.normal(size=(SIZE, SIZE))
     matrix = stiff * (root @ root.T + SIZE * np.eye(SIZE))
@@ -121,7 +121,7 @@ def _as_market(dice: random.Random, matrix: Array) -> bytes:
 
 
 def _recounted(dice: random.Random, content: bytes) -> bytes:
-    """Return a Matrix Market file, at times with other counts or words in its header."""
+    """Return a Matrix Market file, sometimes with wrong counts or words in its header."""
     lines = content.split(b"\n")
     if dice.random() < 0.15:
         at = next(k for k, line in enumerate(lines) if not line.startswith(b"%"))

@@ -1,4 +1,4 @@
-"""Shipped scenarios of meshed bodies that are wrong, as far as their tables: a mesh may be as large as memory is."""
+"""Wrong scenarios of meshed bodies, checked without making meshes, which may be as large as the memory."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from stridula.scenarios.load import _checked
 from stridula.scenarios.read import read_tables
 from stridula.scenarios.show import text_of
 
+from .outcomes import folder, outcome
 from .scenarios import Given, wrong
-from .verdicts import folder, verdict
 
 
 def inputs(seed: int, count: int) -> Iterator[Given]:
-    """Return scenarios as the bytes of their files, and what is set by key."""
+    """Return scenarios as the bytes of their files, and overrides."""
     return wrong("meshed", seed, count, is_meshed=True)
 
 
 def check(given: Given) -> str:
-    """Return what comes of a scenario."""
+    """Return the outcome of a scenario."""
     content, overrides = given
     with folder():
         Path("case.toml").write_bytes(content)
@@ -30,4 +30,4 @@ def check(given: Given) -> str:
             text_of(tables)
             _checked(tables, problems)
 
-        return verdict(run)
+        return outcome(run)

@@ -1,4 +1,4 @@
-"""What a page may say to its session, at random: each message is answered or refused, and the session lives on."""
+"""Random messages of a page to its session: each is answered or refused, and the session continues."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ def inputs(seed: int, count: int) -> Iterator[list[str | bytes]]:
     Parameters
     ----------
     seed : int
-        The same seed yields the same.
+        Seed; equal seeds yield equal conversations.
     count : int
-        How many.
+        Number of conversations.
     """
     for number in range(count):
         dice = random.Random(f"{seed} {number}")
@@ -52,17 +52,17 @@ def inputs(seed: int, count: int) -> Iterator[list[str | bytes]]:
 
 
 def check(given: list[str | bytes]) -> str:
-    """Say some messages to a session; return whether it refused any, ``accepted`` or ``refused``.
+    """Send some messages to a session; return whether it refused any, ``accepted`` or ``refused``.
 
     Parameters
     ----------
     given : list of str or bytes
-        What is said.
+        The messages.
 
     Raises
     ------
     AssertionError
-        If the session ends, hangs or answers otherwise than it should.
+        If the session ends, hangs or answers wrongly.
     """
     began = time.monotonic()
     socket = _Socket(given)
@@ -77,7 +77,7 @@ def check(given: list[str | bytes]) -> str:
 
 
 class _Socket:
-    """A page that says what is given, then something right, and goes; with all that it is told."""
+    """A page that sends given messages, then a valid one, and closes; it keeps all answers."""
 
     def __init__(self, given: list[str | bytes]) -> None:
         self.told: list[dict[str, Any] | bytes] = []
@@ -89,7 +89,7 @@ class _Socket:
         if said is None:
             raise WebSocketDisconnect(1000)
         if isinstance(said, bytes):
-            # As starlette does with what is no text.
+            # As starlette does for other than text.
             raise KeyError("text")
         return said
 
@@ -105,7 +105,7 @@ class _Socket:
 
 
 class _Beside:
-    """Nobody computes maps and linear theory."""
+    """A stand-in that computes neither maps nor linear theory."""
 
     async def ask(self, what: str, **words: Any) -> Any:
         json.dumps(words)
@@ -123,7 +123,7 @@ async def _played(socket: _Socket) -> None:
     except Exception as error:
         raise AssertionError(f"the session ended: {error!r}") from error
     assert socket.told[0]["type"] == "hello"
-    # Whatever was said before, what is right is played.
+    # After any messages, a valid one is played.
     scene = next(one for one in reversed(socket.told) if isinstance(one, dict) and one["type"] != "stroke")
     assert (scene["type"], scene["revision"]) == ("scene", 2**50)
     assert isinstance(socket.told[-1], bytes)
@@ -212,7 +212,7 @@ def _side(control: Control) -> dict[str, Any]:
 
 
 def _go_wrong(dice: random.Random, words: dict[str, Any]) -> None:
-    """Change, take away or add a word somewhere."""
+    """Change, remove or add a word somewhere."""
     inner = [words, *(value for value in words.values() if isinstance(value, dict))]
     table = dice.choice(inner)
     key = dice.choice([*table, "extra", dice.choice(KEYS)])

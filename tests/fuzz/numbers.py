@@ -1,4 +1,4 @@
-"""Values that a wrong input may have."""
+"""Values of wrong inputs."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def number(dice: random.Random) -> float | int:
 
 
 def plain(dice: random.Random, depth: int = 0) -> Any:
-    """Return a value as files have them: a number, a text, or a list or a table of such."""
+    """Return a value as in files: a number, a text, or a list or table of these."""
     draw = dice.random()
     if draw < 0.5 or depth > 3:
         return number(dice)
@@ -71,7 +71,7 @@ def plain(dice: random.Random, depth: int = 0) -> Any:
 
 
 def flipped(dice: random.Random, content: bytes) -> bytes:
-    """Return bytes of which some are cut off, turned over, left out or written twice."""
+    """Return bytes with some cut off, flipped, left out or repeated."""
     draw, some = dice.random(), bytearray(content)
     if not some:
         return content

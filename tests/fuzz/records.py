@@ -1,4 +1,4 @@
-"""Records that are damaged or altered, through what reads them: loaded, judged, drawn, gone on from, compared."""
+"""Damaged or altered records in the functions that read them: load, regime, figures, continuation, comparison."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import stridula as st
 from stridula import analysis, plot
 
 from .numbers import flipped, number, plain
-from .verdicts import folder, verdict
+from .outcomes import folder, outcome
 
 Given = tuple[str, str, int]
 CASES = ("squeal", "belt")
@@ -23,14 +23,14 @@ DAMAGES = ("bytes", "drop", "rename", "values", "slice", "dims", "type", "attrib
 
 
 def inputs(seed: int, count: int) -> Iterator[Given]:
-    """Return a damage, a use, and the seed of how it is done."""
+    """Return a damage, a use, and the seed of the damage."""
     for k in range(count):
         dice = random.Random(f"records {seed} {k}")
         yield dice.choice(DAMAGES), dice.choice(list(USES)), dice.randrange(2**32)
 
 
 def check(given: Given) -> str:
-    """Return what comes of a damaged record."""
+    """Return the outcome of a damaged record."""
     damage, use, seed = given
     dice = random.Random(seed)
     case = dice.choice(CASES)
@@ -41,7 +41,7 @@ def check(given: Given) -> str:
             run = _from_bytes(dice, whole) if damage == "bytes" else _altered(dice, whole.copy(), damage)
             USES[use](run, case)
 
-        return verdict(done)
+        return outcome(done)
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Shipped scenarios with keys, values, units, nesting and types that are wrong; 1 ms of a run where they load."""
+"""Shipped scenarios with wrong keys, values, units, nesting and types; runs of 1 ms if they load."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import stridula as st
 from stridula.scenarios.read import read_tables
 
 from .numbers import ODD, flipped, number, plain
-from .verdicts import folder, verdict, watcher
+from .outcomes import folder, outcome, watcher
 
 KEYS = (
     "length",
@@ -37,12 +37,12 @@ Given = tuple[bytes, dict[str, Any]]
 
 
 def inputs(seed: int, count: int) -> Iterator[Given]:
-    """Return scenarios as the bytes of their files, and what is set by key."""
+    """Return scenarios as the bytes of their files, and overrides."""
     return wrong("scenarios", seed, count, is_meshed=False)
 
 
 def wrong(kind: str, seed: int, count: int, is_meshed: bool) -> Iterator[Given]:
-    """Return scenarios with or without meshes that are wrong, as the bytes of their files, and what is set by key."""
+    """Return wrong scenarios with or without meshes, as the bytes of their files, and overrides."""
     for k in range(count):
         dice = random.Random(f"{kind} {seed} {k}")
         tables = copy.deepcopy(dice.choice(_shipped(is_meshed)))
@@ -56,7 +56,7 @@ def wrong(kind: str, seed: int, count: int, is_meshed: bool) -> Iterator[Given]:
 
 
 def check(given: Given) -> str:
-    """Return what comes of a scenario."""
+    """Return the outcome of a scenario."""
     content, overrides = given
     with folder():
         Path("case.toml").write_bytes(content)
@@ -66,7 +66,7 @@ def check(given: Given) -> str:
             str(scenario.system)
             scenario.simulate(duration=1e-3, watchers=[watcher()])
 
-        return verdict(run)
+        return outcome(run)
 
 
 @cache
@@ -108,7 +108,7 @@ def _changed(dice: random.Random, tables: dict[str, Any]) -> None:
 
 
 def _places(tables: Any) -> Iterator[tuple[Any, Any]]:
-    """Go through every place of nested tables and lists."""
+    """Iterate over every place of nested tables and lists."""
     for key in list(tables) if isinstance(tables, dict) else range(len(tables)):
         yield tables, key
         if isinstance(tables[key], (dict, list)):
@@ -116,7 +116,7 @@ def _places(tables: Any) -> Iterator[tuple[Any, Any]]:
 
 
 def _key(dice: random.Random, tables: dict[str, Any]) -> str:
-    """Return a key, full or the end of one, or one that is not there."""
+    """Return a key, in full or abbreviated, or an unknown one."""
     if dice.random() < 0.3:
         return dice.choice(KEYS + ODD) + str(dice.randrange(1000))
     table, parts = tables, []

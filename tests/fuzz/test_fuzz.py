@@ -1,4 +1,4 @@
-"""A few hundred inputs of each kind that are wrong on purpose; `python -m tests.fuzz` runs many, with limits."""
+"""A few hundred deliberately wrong inputs of each kind; `python -m tests.fuzz` runs many, with limits."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from itertools import islice
 import pytest
 
 from . import __main__ as runner
-from .verdicts import ACCEPTED, REFUSED
+from .outcomes import ACCEPTED, REFUSED
 
-# As many as take some seconds; other kinds have FEW.
-SEED, COUNTS, FEW = 0, {"scenarios": 200, "matrices": 400, "records": 100, "doors": 150}, 100
+# Numbers that take some seconds; other kinds have FEW.
+SEED, COUNTS, FEW = 0, {"scenarios": 200, "matrices": 400, "records": 100, "calls": 150}, 100
 PARTS = 10
 KINDS = runner.modules()
 
 
 @pytest.mark.parametrize("part", range(PARTS))
 @pytest.mark.parametrize("name", list(KINDS))
-def test_what_is_wrong_is_refused_in_one_line(name, part):
+def test_wrong_inputs_are_refused_in_one_line(name, part):
     count = COUNTS.get(name, FEW)
     for number, given in islice(enumerate(KINDS[name].inputs(SEED, count)), part, None, PARTS):
         try:
@@ -29,14 +29,14 @@ def test_what_is_wrong_is_refused_in_one_line(name, part):
 
 
 @pytest.mark.parametrize("name", list(KINDS))
-def test_inputs_come_again(name):
+def test_inputs_are_repeatable(name):
     first, again = (list(map(repr, KINDS[name].inputs(3, 5))) for _ in range(2))
     assert first == again != list(map(repr, KINDS[name].inputs(4, 5)))
     assert first == list(map(repr, KINDS[name].inputs(3, 9)))[:5]
 
 
 class Wrong:
-    """Inputs each of which goes wrong in another way."""
+    """Inputs that fail in different ways."""
 
     @staticmethod
     def inputs(seed, count):
@@ -53,7 +53,7 @@ class Wrong:
         return given
 
 
-def test_what_goes_wrong_is_counted_and_told(monkeypatch, capsys):
+def test_failures_are_counted_and_reported(monkeypatch, capsys):
     monkeypatch.setattr(runner, "LIMIT", 0.5)
     counts, peak = runner.counted("wrong", Wrong, 7, 5, 2)
     assert counts == {"accepted": 1, "refused": 1, "traceback": 1, "crashed": 1, "hung": 1}

@@ -1,4 +1,4 @@
-"""A few hundred conversations at random."""
+"""A few hundred random conversations."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ import pytest
 from . import messages
 
 SEED, COUNT = 7, 300
-# What they may leave in memory, once memory is as the first of them left it [bytes].
+# Growth of memory allowed after the first of them [bytes].
 GROWTH = 60e6
 
 
-def test_whatever_a_page_says_its_session_answers_and_lives_on(capfd):
+def test_a_session_answers_any_message_and_continues(capfd):
     process, found = psutil.Process(), Counter()
     for number, given in enumerate(messages.inputs(SEED, COUNT)):
         found[messages.check(given)] += 1
         if number == COUNT // 3:
             before = process.memory_info().rss
     assert process.memory_info().rss < before + GROWTH
-    # Both kinds are there, or nothing would be tried.
+    # Both outcomes occur, or nothing would be tested.
     assert min(found["accepted"], found["refused"]) > COUNT // 10
     assert capfd.readouterr() == ("", "")
 
 
-def test_the_same_seed_says_the_same():
+def test_equal_seeds_give_equal_messages():
     assert list(messages.inputs(3, 20)) == list(messages.inputs(3, 20))
     assert list(messages.inputs(3, 20)) != list(messages.inputs(4, 20))
 

@@ -1,4 +1,4 @@
-"""Maps over faces in contact: what is drawn is what was recorded, where it is."""
+"""Maps over faces in contact: recorded values are drawn at their places."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ STEP = 1e-5
 
 
 def face(places, values, samples=1):
-    """Return what `analysis.surface` would, with a pressure that doubles from sample to sample."""
+    """Return a result like that of `analysis.surface`, with a pressure that doubles from sample to sample."""
     values = np.multiply.outer(2.0 ** np.arange(samples), np.asarray(values, dtype=float))
     share = np.zeros((*values.shape, 3))
     share[..., 0], share[..., 2] = 0.25, 0.75
@@ -103,7 +103,7 @@ def test_a_square_face_is_drawn_along_the_world():
     assert [np.ptp(triangles.x), np.ptp(triangles.y)] == pytest.approx([0.04, 0.04])
 
 
-def test_colours_do_not_bridge_what_is_no_part_of_the_face():
+def test_colours_do_not_bridge_gaps_in_the_face():
     """Two strips far apart."""
     places = np.concatenate([grid(8, 2), grid(8, 2) + np.array([0.0, 0.0, 0.06])])
     triangles, _ = drawn(plot.surface(face(places, np.ones(32))).axes[0])
@@ -120,7 +120,7 @@ def test_colours_keep_to_the_inner_edge_of_a_sector():
 
 
 def test_frames_of_a_film_are_means(monkeypatch, tmp_path):
-    """At 25 frames a second and slowed down 2000 times a frame is two samples."""
+    """At 25 frames per second and slowed down 2000 times, a frame is two samples."""
     found, seen = face(grid(), np.ones(24), samples=8), []
     whole = surfaces.write_film
 

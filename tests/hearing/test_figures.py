@@ -1,4 +1,4 @@
-"""Figures of sounds: what is drawn is what was heard."""
+"""Figures of sounds with known content."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def test_each_listener_is_a_line():
 
 
 def circle(count=36, duration=0.2):
-    """Return a dipole along x at 1 kHz, heard on a circle about (1, 2, 3), listeners not in their order."""
+    """Return a dipole along x at 1 kHz, heard on a circle about (1, 2, 3), with listeners in mixed order."""
     angle = np.random.default_rng(0).permutation(2.0 * np.pi * np.arange(count) / count)
     one = tone(1000.0, 80.0, duration)
     places = {"x": ("listener", 1.0 + np.cos(angle)), "y": ("listener", 2.0 + np.sin(angle))}
@@ -119,7 +119,7 @@ def test_bands_are_lines_and_half_a_circle_stays_open():
 
 
 def test_a_tone_stands_in_its_band():
-    """1 Pa rms at 1 kHz is 94 dB; of its two listeners the second hears half."""
+    """1 Pa rms at 1 kHz is 94 dB; the second of two listeners hears half."""
     time = np.arange(24_000) / 48e3
     tone = np.sqrt(2.0) * np.sin(2.0 * np.pi * 1000.0 * time)
     (axes,) = plot.third_octaves(heard(np.stack([tone, 0.5 * tone], axis=1))).axes
@@ -154,6 +154,6 @@ def test_a_tone_stands_in_its_band():
         (lambda: plot.directivity(0.0 * circle()), "pressure must hold a sound, got silence"),
     ],
 )
-def test_what_cannot_be_drawn_is_said_in_one_line(call, message):
+def test_bad_arguments_are_refused_in_one_line(call, message):
     with pytest.raises(ValueError, match=message):
         call()

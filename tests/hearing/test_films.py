@@ -1,4 +1,4 @@
-"""Films: the motion is that of the record, a closed contact is closed in the picture, which says its scales."""
+"""Films: the motion is that of the record, closed contacts are drawn closed, and scales are shown."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_the_motion_is_that_of_the_record(pair, motion):
     slider, _ = pair_of(motion)
     root = slider[:, -1, 1] - slider[0, -1, 1]
     moved = run.displacement.values[per - 1 :: per, 0][-100:]
-    # Two low-passes, of one frame and of one sample, of a root that moves slowly.
+    # Two low-passes, of one frame and of one sample, for a root that moves slowly.
     np.testing.assert_allclose(root, moved - moved[0], atol=2e-6)
 
 
@@ -87,7 +87,7 @@ def test_slide_and_mean_shape_stay_to_scale(motion):
     np.testing.assert_allclose(track_more.mean(axis=0), track_once.mean(axis=0), atol=1e-12)
 
 
-def test_the_picture_says_time_status_and_scales(motion):
+def test_the_picture_shows_time_status_and_scales(motion):
     picture = Picture(motion, 200.0, 1000.0, "Squeal")
     beams = picture.figure.axes[0]
     for frame in (0, 50, 99):
@@ -134,7 +134,7 @@ def test_an_mp4_can_be_played(pair, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["a.mp4"]
 
 
-def test_without_an_encoder_it_says_what_to_do(pair, monkeypatch, tmp_path):
+def test_without_an_encoder_the_message_names_a_remedy(pair, monkeypatch, tmp_path):
     monkeypatch.setattr(reels, "_encoder", lambda: None)
     with pytest.raises(
         ValueError, match=r'out must end in \.gif without an encoder \(pip install "\.\[video\]" in the sources\)'
@@ -174,8 +174,8 @@ def on_plate():
     return filmed(system, 0.018, 0.002, pair.scheme)
 
 
-def test_of_a_plate_one_sees_the_cut_along_the_line(on_plate):
-    """Where a contact is closed, the cut bends as far as the tip says."""
+def test_a_plate_is_shown_by_its_cut_along_the_line(on_plate):
+    """At a closed contact the cut has the displacement of the tip."""
     _, cut = pair_of(on_plate)
     low, high = cut[0, [0, -1], 0]
     assert low < -0.3 < 0.3 < high
@@ -190,7 +190,7 @@ def test_of_a_plate_one_sees_the_cut_along_the_line(on_plate):
     assert Picture(on_plate, 50.0, 1000.0, "").figure.axes[0].get_xlabel() == "x along the cut through the plate [m]"
 
 
-def test_words_do_not_run_into_each_other(on_plate):
+def test_labels_do_not_overlap(on_plate):
     figure = Picture(on_plate, 12345.0, 123456.0, "Squeal on a plate").figure
     figure.draw_without_rendering()
     places = [text.get_window_extent() for text in (*figure.texts, figure.axes[0]._left_title)]
@@ -231,7 +231,7 @@ def test_the_verb_films_a_scenario_and_its_record_alike(stridula, tmp_path):
         (("stable-sliding", "--from", "3"), "start must be before the run ends (off the track at 1.27624 s), got 3.0"),
     ],
 )
-def test_bad_input_is_one_line_and_2(stridula, tmp_path, arguments, message):
+def test_bad_input_is_one_line_with_exit_code_2(stridula, tmp_path, arguments, message):
     code, out, err = stridula("animate", *arguments, "--out", "a.gif")
     assert (code, out) == (2, "")
     assert err.startswith(f"stridula: {message}")
@@ -239,7 +239,7 @@ def test_bad_input_is_one_line_and_2(stridula, tmp_path, arguments, message):
     assert not any(tmp_path.iterdir())
 
 
-def test_places_and_formats_that_cannot_be(stridula):
+def test_bad_paths_and_formats_are_refused(stridula):
     assert (
         stridula("animate", "squeal", "--out", "a.avi")[2]
         == "stridula: out must end in one of .mp4, .gif, got 'a.avi'\n"
@@ -247,7 +247,7 @@ def test_places_and_formats_that_cannot_be(stridula):
     assert stridula("animate", "squeal", "--out", "no/a.gif")[0] == 2
 
 
-def test_a_record_that_goes_on_from_another_is_refused(stridula, pair):
+def test_a_continued_record_is_refused(stridula, pair):
     first = pair.simulate(duration=1e-3)
     st.save(pair.simulate(duration=1e-3, start=first), "on.nc")
     code, _, err = stridula("animate", "on.nc", "--out", "a.gif")
@@ -280,8 +280,8 @@ def test_a_string_is_a_line_under_the_hairs_of_a_bow(bowed):
     np.testing.assert_allclose(x, [0.0358, 0.0374, 0.039, 0.0406, 0.0422])
 
 
-def test_what_sticks_moves_along_with_the_strokes(bowed):
-    """The bow goes up: so does the string where it sticks, but for the speck that stands for its twist."""
+def test_sticking_points_move_with_the_strokes(bowed):
+    """The bow moves up, and so does the sticking string, except for the point that models its torsion."""
     assert len(bowed.surfaces) == 5
     stuck = bowed.run.status_share.sel(contact_status="sticking").values == 1.0
     drawn, seen = bowed.drawn(50.0), 0
@@ -291,7 +291,7 @@ def test_what_sticks_moves_along_with_the_strokes(bowed):
         still = stuck[1:, number] & stuck[:-1, number]
         (line, row), (tip, own) = touch.touched, touch.tip
         apart = (drawn[line][:, row] - drawn[tip][:, own])[:, 1]
-        # Beside a slip the low-pass has a share of it.
+        # Near a slip the low-pass includes a part of it.
         assert np.median(np.diff(apart)[still]) == pytest.approx(50.0 * np.diff(bow.travel)[0], rel=0.01)
         seen += np.count_nonzero(still)
     assert seen > 50
@@ -314,7 +314,7 @@ def test_each_contact_is_marked_where_it_touches(bowed):
 
 
 def test_a_beam_on_two_tracks_is_closed_on_both():
-    """Its tip is on a beam, another point presses on a stop, whose place follows from the beam."""
+    """Its tip is on a beam; another point presses on a stop, whose place follows from the beam."""
     steel = st.Material(2.1e11, 7800.0)
     beam = st.ModalBeam(steel, st.Rectangle(0.02, 0.005), 1.0, bending_modes=6, axial_modes=0, damping=0.02)
     rod = st.FiniteElementBeam(steel, st.Rectangle(0.01, 0.01), 0.3, angle=0.6, elements=4, damping=0.02)

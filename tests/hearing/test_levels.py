@@ -24,7 +24,7 @@ EXACT = 10.0 ** (np.arange(10, 44) / 10.0)
 
 
 def a_gain(frequency):
-    """Return the A-weighting [dB] as IEC 61672-1:2013, annex E has it, from the frequencies that define its poles."""
+    """Return the A-weighting [dB] of IEC 61672-1:2013, annex E, from the frequencies that define its poles."""
     low, reference, high, weighting = 10.0**1.5, 1000.0, 10.0**3.9, 10.0**2.45
     half = np.sqrt(0.5)
     c = low**2 * high**2
@@ -40,7 +40,7 @@ def a_gain(frequency):
 
 
 def test_a_weighting_is_the_standards_to_its_last_digit():
-    """Table and formula of the standard say the same, and so does the code."""
+    """Table and formula of the standard agree with each other and with the code."""
     np.testing.assert_array_equal(np.round(a_gain(EXACT), 1), A_ROWS[:, 0])
     gains = 20.0 * np.log10(np.abs(a_weighting(EXACT)))
     np.testing.assert_array_equal(np.round(gains, 1), A_ROWS[:, 0])
@@ -51,7 +51,7 @@ def test_a_weighting_is_the_standards_to_its_last_digit():
 @pytest.mark.parametrize("rate", [48e3, 100e3])
 def test_weighted_levels_of_tones_are_within_class_1(rate):
     for frequency, (gain, low, high) in zip(EXACT, A_ROWS, strict=True):
-        # Faded in and out: what a sudden start spreads would drown a tone that is weighted by -70 dB.
+        # Faded in and out: an abrupt start would mask a tone weighted by -70 dB.
         sound = tone(frequency, 90.0, 2.0, rate)
         sound *= np.hanning(sound.size)
         change = float(st.equivalent_level(sound, "A") - st.equivalent_level(sound))
@@ -124,7 +124,7 @@ def test_a_tone_is_in_its_band():
     assert list(levels.band.values) == list(NOMINAL[4:34])
     assert levels.band.values[0] == 25.0
     assert float(levels.sel(band=1000.0)) == pytest.approx(70.0, abs=0.01)
-    # Order 6 leaves -36.4 dB at the next centre, and a start at once spreads.
+    # Order 6 leaves -36.4 dB at the next centre, and an abrupt start spreads.
     assert float(levels.drop_sel(band=1000.0).max()) < 70.0 - 32.0
     assert float(levels.drop_sel(band=[800.0, 1000.0, 1250.0]).max()) < 70.0 - 40.0
     assert float(levels.centre.sel(band=1250.0)) == pytest.approx(1258.925, abs=1e-3)
@@ -179,6 +179,6 @@ def test_bands_of_white_noise_rise_by_one_decibel_and_add_up():
         ),
     ],
 )
-def test_what_cannot_be_measured_is_said_in_one_line(call, message):
+def test_unmeasurable_sounds_are_refused_in_one_line(call, message):
     with pytest.raises(ValueError, match=message):
         call()

@@ -61,7 +61,7 @@ def test_a_player_plays_what_the_file_of_the_same_sound_holds(tmp_path):
     assert st.listen(given, subtype="PCM_24").wav == (tmp_path / "a.wav").read_bytes()
 
 
-def test_it_says_in_print_and_below_the_player_what_it_is():
+def test_the_summary_is_printed_and_shown_below_the_player():
     sound = st.listen(tone(level=100.0), full_scale=10.0)
     assert re.fullmatch(r"sound: 1 channel, 48 kHz, 1 s, peak as written .* full scale 10 Pa, calibrated", str(sound))
     assert str(sound) in sound._repr_html_()
@@ -77,11 +77,11 @@ def test_it_says_in_print_and_below_the_player_what_it_is():
         ({"sample_rate": 8000}, "sample_rate must be one of"),
     ],
 )
-def test_what_cannot_be_played(words, message):
+def test_unplayable_sounds_are_refused(words, message):
     with pytest.raises(ValueError, match=message):
         st.listen(heard([0.0, 2.0, -1.0]), **words)
 
 
-def test_what_is_no_sound_is_refused():
+def test_other_objects_are_refused():
     with pytest.raises(ValueError, match="pressure must be a DataArray"):
         st.listen(np.zeros(5))

@@ -1,4 +1,4 @@
-"""Loudness, sharpness and roughness: guard values, definitions, and what cannot be judged."""
+"""Loudness, sharpness and roughness: guard values, definitions, and refused sounds."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.skipif(not sensation.is_available(), reason="takes mosq
 
 
 def modulated(duration=0.4, level=60.0, carrier=1000.0, modulation=70.0, rate=48e3):
-    """Return a tone fully modulated in amplitude, of a level over all."""
+    """Return a tone with full amplitude modulation, of a total level."""
     time = np.arange(round(duration * rate)) / rate
     values = (1.0 + np.sin(2.0 * np.pi * modulation * time)) * np.sin(2.0 * np.pi * carrier * time)
     return heard(values * 20e-6 * 10.0 ** (level / 20.0) / np.sqrt(np.mean(values**2)), rate)
@@ -70,7 +70,7 @@ def test_roughness_needs_modulation():
 
 
 @pytest.mark.parametrize("function", [st.loudness, st.loudness_over_time, st.sharpness, st.roughness])
-def test_each_listener_has_his_own(function):
+def test_each_listener_has_its_own_value(function):
     one = modulated(0.6)
     two = xr.concat([one, 0.0 * one], "listener").transpose("time", "listener").assign_coords(listener=["ear", "wall"])
     found = function(two)
@@ -101,7 +101,7 @@ def test_fields_are_named():
         st.loudness(tone(), "frontal")
 
 
-def test_a_missing_package_is_said_with_its_extra(monkeypatch):
+def test_a_missing_package_is_reported_with_its_extra(monkeypatch):
     monkeypatch.setitem(sys.modules, "mosqito.sq_metrics", None)
     monkeypatch.setitem(sys.modules, "mosqito", None)
     with pytest.raises(

@@ -1,4 +1,4 @@
-"""Pictures and films in space: bodies are where their modes move them, colours say how fast, points their status."""
+"""Pictures and films in space: bodies follow their modes, colours show velocities, points show statuses."""
 
 from __future__ import annotations
 
@@ -52,14 +52,14 @@ def on_plane(body):
 
 
 def wheel():
-    """Return a ring that leans and stands elsewhere."""
+    """Return an inclined ring away from the origin."""
     profile = st.RectangleProfile({"ring": ((0.05, 0.08), (0.0, 0.01))})
     return st.AxisymmetricBody(profile, STEEL, cutoff=6e3, axis=(1.0, 2.0, -0.5), origin=(0.3, -0.2, 0.1), name="ring")
 
 
 @pytest.mark.parametrize("body", [block(), wheel(), st.SolidBody.block((0.1, 0.1, 0.1), (1, 2, 3), STEEL, linear=True)])
 def test_a_surface_is_closed_and_its_normals_point_out(body):
-    """By the theorem of Gauss it then holds the volume of the body."""
+    """By the divergence theorem it then encloses the volume of the body."""
     found = body.drawn.swept
     corners = found.place[found.polygons]
     apart = corners - corners[:, :1]
@@ -84,7 +84,7 @@ def test_corners_move_as_points_of_the_body_do(body, positions):
 
 
 def still_scene(body, speed):
-    """Return a scene of a body that moves as a whole at a velocity."""
+    """Return a scene of a body in rigid motion at a velocity."""
     uniform = np.tile(speed, (len(body.mesh.nodes), 1))
     modal = body.modal_coordinates(uniform)
     motion = ModalMotion({body.name: np.stack([0.0 * modal, 1e-3 * modal])}, {body.name: np.stack([modal, modal])})
@@ -94,7 +94,7 @@ def still_scene(body, speed):
 
 
 def test_colours_are_velocities_out_of_the_surface():
-    """Of a block that rises the top is red, the sides, which move along themselves, are white."""
+    """The top of a rising block is red; its sides, which have no normal velocity, are white."""
     scene = still_scene(block(), (0.0, 0.3, 0.0))
     scene.show(0)
     (body,) = scene.bodies
@@ -103,7 +103,7 @@ def test_colours_are_velocities_out_of_the_surface():
     top, side = np.isclose(normals[:, 1], 1.0), np.isclose(normals[:, 1], 0.0)
     assert top.any()
     assert side.any()
-    # Of polygons drawn from the back to the front.
+    # Polygons are drawn from back to front.
     red, _, blue, _ = scene.sides.get_facecolor().T
     assert np.count_nonzero(red > 2.0 * blue) == np.count_nonzero(top)
     np.testing.assert_allclose(red[red <= 2.0 * blue], blue[red <= 2.0 * blue], rtol=0.01)
@@ -138,7 +138,7 @@ def test_departures_from_the_mean_are_exaggerated():
     assert 0.5 * (first + second)[..., 1].min() == pytest.approx(0.15e-3)
 
 
-def test_what_looks_away_is_not_drawn():
+def test_hidden_faces_are_not_drawn():
     (body,) = still_scene(block(), (0.0, 0.0, 0.0)).bodies
     seen = body.surface.normals[body.seen]
     assert seen[:, 1].min() > -0.5
@@ -146,7 +146,7 @@ def test_what_looks_away_is_not_drawn():
     assert 0 < np.count_nonzero(body.seen) < len(body.seen)
 
 
-def test_the_picture_says_time_scales_and_status(rig, motion):
+def test_the_picture_shows_time_scales_and_status(rig, motion):
     picture = SpacePicture(rig.system, motion, 50.0, 1000.0, "Pin on disc", VIEW)
     assert set(np.unique(motion.run.status)) == {0, 1, 2}
     rest = np.array([contact.tip.body.place(contact.tip.position) for contact in rig.system.contacts])
@@ -297,7 +297,7 @@ def test_the_verb_films_a_scenario_and_its_record_alike(stridula, tmp_path):
     for record in ("run.nc", "again.nc"):
         assert stridula("animate", record, "--out", "b.gif", *window, "--exaggeration", "100")[0] == 0
         unlike = np.abs(frames_of("a.gif") - frames_of("b.gif")).max(axis=3) > 16
-        # What single precision may move is an edge by a pixel.
+        # Single precision may move an edge by a pixel.
         assert unlike.mean() < 1e-3
     assert stridula("animate", "pin-on-disc", "--out", "c.gif", "--azimuth", "3 m")[0] == 2
     assert not (tmp_path / "c.gif").exists()

@@ -23,8 +23,8 @@ def test_it_is_the_sound_of_the_record(case, listener):
     cuts = np.cumsum([0, 480, 1, 7, 952, 480, 10, len(force)]).clip(max=len(force))
     parts = [sound.feed(force[low:high], middle[low:high]) for low, high in itertools.pairwise(cuts)]
     heard = np.concatenate(parts)[sound.delay :]
-    # Before the sound arrives, the record's is silent and this one has what the low-pass sends ahead; at the end of
-    # the record the filters of both see another future.
+    # Before arrival, the sound of the record is silent and the streamed one has the pre-ringing of the low-pass; at the
+    # end of the record the filters of the two depend on different samples beyond.
     first = int(np.flatnonzero(whole)[0])
     inner = slice(first, len(heard) - 100)
     assert np.abs(heard[inner] - whole[inner]).max() < 1e-9 * np.abs(whole).max()

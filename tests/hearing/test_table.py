@@ -1,4 +1,4 @@
-"""The table of what listeners hear."""
+"""The table of measures at listeners."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ FEELS = "loudness N5 (at least {}), sharpness (at least {}), roughness (at least
         ),
     ],
 )
-def test_what_a_sound_is_too_little_for_is_one_line(capsys, lasts, rate, last_line):
+def test_measures_that_need_a_longer_sound_are_one_line(capsys, lasts, rate, last_line):
     if not sensation.is_available():
         pytest.skip("takes mosqito")
     print_levels(tone(duration=lasts, rate=rate))
@@ -70,7 +70,7 @@ def test_what_a_sound_is_too_little_for_is_one_line(capsys, lasts, rate, last_li
 
 
 @pytest.mark.parametrize("column", [*hearing.LEVELS, *hearing.SENSATIONS], ids=lambda column: column.name)
-def test_what_the_table_says_a_measure_takes_is_what_it_takes(column):
+def test_requirements_in_the_table_are_those_of_the_measures(column):
     if column in hearing.SENSATIONS and not sensation.is_available():
         pytest.skip("takes mosqito")
     rate = column.lowest_rate or 8e3
@@ -89,7 +89,7 @@ def test_the_louder_ear_is_named_as_far_as_the_sound_is_enough():
     assert loudest(tone(duration=1e-3)) == loudest(0.0 * one) == ""
 
 
-def test_what_takes_a_package_says_so(capsys, monkeypatch):
+def test_measures_that_need_a_package_name_it(capsys, monkeypatch):
     monkeypatch.setattr(hearing, "is_available", lambda: False)
     print_levels(tone())
     assert (

@@ -40,7 +40,7 @@ def dataset(plotter, name):
 
 
 def words_of(plotter):
-    """Return what stands in the upper left corner."""
+    """Return the text in the upper left corner."""
     return plotter.actors["words"].GetText(2)
 
 
@@ -60,7 +60,7 @@ def test_at_rest_bodies_and_contacts_are_where_they_are(rig):
     ends = [contact.placed_end for contact in rig.system.contacts]
     places = [end.body.place(end.position) for end in ends]
     np.testing.assert_allclose(dataset(plotter, "contacts").points, places, rtol=1e-6)
-    # The picture has the pale colour of bodies, dark points and a white ground.
+    # The picture has the pale colour of bodies, dark points and a white background.
     picture = plotter.screenshot(return_img=True)
     assert (picture == 255).all(axis=2).mean() > 0.3
     assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 50
@@ -90,7 +90,7 @@ def test_motion_colours_and_points_are_those_of_the_film(rig):
             if len(marked):
                 np.testing.assert_allclose(dataset(plotter, word).points, marked, rtol=1e-5, atol=1e-7)
         assert f"{1e3 * float(motion.run.time[frame]):.3f} ms" in words_of(plotter)
-    # Another frame is another motion.
+    # Another frame differs.
     assert np.abs(scene._polygons(0) - scene._polygons(last)).max() > 1e-4
     low, high = plotter.actors["disc"].mapper.scalar_range
     assert high == -low == pytest.approx(scene.moved.largest_velocity, rel=0.5)
@@ -136,7 +136,7 @@ def test_bad_input_is_one_line(rig, call, message):
     assert "\n" not in str(caught.value)
 
 
-def test_without_pyvista_one_line_says_so(rig, monkeypatch):
+def test_without_pyvista_one_line_reports_it(rig, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyvista", None)
     with pytest.raises(
         ImportError, match=r'^views need pyvista, which is not installed: pip install "\.\[view\]" in the sources$'

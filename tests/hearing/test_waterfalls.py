@@ -1,4 +1,4 @@
-"""Spectra one behind the other: each on its value, a tone at its own level, and modes that grow where they are."""
+"""Waterfalls of spectra: each at its value, tones at their levels, growing modes at their places."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .sounds import heard, noise, tone
 
 
 def lines(figure):
-    """Return the lines of spectra, without the bar of levels and what theory adds."""
+    """Return the lines of spectra, without the bar of levels and the marks of theory."""
     (axes,) = figure.axes
     return [line.get_xydata() for line in axes.get_lines() if line.get_color() == waterfalls.LINE]
 
@@ -26,7 +26,7 @@ def levels(line, value, step, dynamic_range, top):
 
 @pytest.fixture(scope="module")
 def tones():
-    """Return tones of 1, 2 and 3 kHz at 60, 70 and 80 dB by speed, not in their order."""
+    """Return tones of 1, 2 and 3 kHz at 60, 70 and 80 dB by speed, in mixed order."""
     return {k: tone(1000.0 * k, 50.0 + 10.0 * k, units="Pa") for k in (3.0, 1.0, 2.0)}
 
 
@@ -39,7 +39,7 @@ def test_each_tone_is_on_its_value_at_its_frequency_and_level(tones):
         peak = line[:, 1].argmax()
         assert line[peak, 0] == pytest.approx(number)
         known = 50.0 + 10.0 * number
-        # The level of a tone in the middle of a frequency under the window.
+        # The level of a tone at the centre of a frequency bin under the window.
         assert levels(line, number, 1.0, 60.0, 80.0)[peak] == pytest.approx(known, abs=0.05)
         assert np.median(line[:, 1]) == pytest.approx(number), "what is below the range lies on the value"
     words = [text.get_text().strip() for text in axes.texts]
@@ -81,14 +81,14 @@ def test_one_signal_is_cut_into_stretches_of_time():
 
 
 def theory(*modes):
-    """Return frequencies and whether they grow, as linear theory has them."""
+    """Return frequencies and whether they grow, in the form of linear theory."""
     frequency, unstable = zip(*modes, strict=True)
     data = {"frequency": ("mode", list(frequency)), "unstable": ("mode", list(unstable))}
     return xr.Dataset(data)
 
 
 def marks(figure):
-    """Return the rings of modes that grow."""
+    """Return the rings that mark growing modes."""
     found = [line for line in figure.axes[0].get_lines() if line.get_marker() == "o"]
     return found[0].get_xydata().tolist() if found else []
 
@@ -141,6 +141,6 @@ def test_root_loci_and_records_go_together():
         (xr.DataArray(np.zeros((3, 99)), dims=("case", "time")), {}, "signals must have numbers along case"),
     ],
 )
-def test_what_cannot_be_drawn_is_refused(signals, options, message):
+def test_bad_arguments_are_refused(signals, options, message):
     with pytest.raises(ValueError, match=message):
         plot.waterfall(signals, **options)

@@ -1,4 +1,4 @@
-"""Sound files: what is read is what was heard, in pascals, and nothing is clipped or folded back."""
+"""Sound files: they are read back in pascals, without clipping or aliasing."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_a_tone_keeps_its_level(tmp_path, rate, wanted, frequency):
 
 
 @pytest.mark.parametrize(("wanted", "frequencies"), [(44100, (22100.0, 25e3, 43.1e3)), (48000, (24.1e3, 47e3))])
-def test_what_cannot_be_heard_is_not_folded_back(wanted, frequencies):
+def test_inaudible_frequencies_are_not_aliased(wanted, frequencies):
     for frequency in frequencies:
         inside = resampled(tone(frequency, 94.0, 0.2, 100e3).values[:, None], 100e3, wanted)[:, 0]
         folded = abs(frequency - wanted)
@@ -58,14 +58,14 @@ def test_what_cannot_be_heard_is_not_folded_back(wanted, frequencies):
         assert np.abs(middle).max() < 10.0 ** (-100.0 / 20.0) * np.sqrt(2.0)
 
 
-def test_a_plain_decimation_would_fold_back():
+def test_a_plain_decimation_would_alias():
     """Negative control of the measure above."""
     every_second = tone(30e3, 94.0, 0.2, 96e3).values[::2]
     assert amplitude(every_second, 48e3, 18e3) == pytest.approx(np.sqrt(2.0), rel=0.01)
 
 
 @pytest.mark.parametrize("rate", [8e3, 20e3, 31234.5])
-def test_no_image_is_left_above_what_was_there(rate):
+def test_no_image_is_left_above_the_original_band(rate):
     frequency = 0.4 * rate
     finer = resampled(tone(frequency, 94.0, 0.2, rate).values[:, None], rate, 96e3)[:, 0]
     assert amplitude(finer, 96e3, rate - frequency) < 1e-5
@@ -87,7 +87,7 @@ def test_a_later_ear_is_the_second_channel(tmp_path):
     assert (rate, list(samples.argmax(axis=0))) == (48000, [100, 130])
 
 
-def test_the_file_says_its_scale_to_other_programs(tmp_path):
+def test_the_file_states_its_scale_to_other_programs(tmp_path):
     st.write_wav(tmp_path / "a.wav", tone(start=0.5), full_scale=0.1)
     with soundfile.SoundFile(tmp_path / "a.wav") as file:
         assert file.comment == "stridula: full_scale_pascal=0.1 start_second=0.5"
@@ -103,7 +103,7 @@ def test_a_normalised_file_peaks_one_decibel_below_full_scale(tmp_path):
     assert np.abs(st.read_wav(tmp_path / "a.wav")).max() == pytest.approx(peak, rel=1e-6)
 
 
-def test_silence_stays_silence_and_is_said(tmp_path):
+def test_silence_stays_silence_and_is_reported(tmp_path):
     said = st.write_wav(tmp_path / "a.wav", heard(np.zeros((100, 2))))
     assert "silence (full scale 1 Pa)" in str(said)
     assert not st.read_wav(tmp_path / "a.wav").values.any()
@@ -175,7 +175,7 @@ def test_arguments_out_of_range(tmp_path, words, message):
         (heard([0.0, 1.0]).assign_coords(time=[0.0, 0.0]), "pressure must be evenly sampled"),
     ],
 )
-def test_what_is_no_sound_pressure(tmp_path, pressure, message):
+def test_bad_sound_pressures_are_refused(tmp_path, pressure, message):
     with pytest.raises(ValueError, match=message):
         st.write_wav(tmp_path / "a.wav", pressure)
 
@@ -185,7 +185,7 @@ def test_places_that_cannot_be_written(tmp_path):
         st.write_wav(tmp_path / "nowhere" / "a.wav", tone())
 
 
-def test_files_that_are_no_sound_or_say_no_scale(tmp_path):
+def test_files_without_sound_or_scale_are_refused(tmp_path):
     path = Path(tmp_path / "a.wav")
     with pytest.raises(FileNotFoundError, match="cannot read"):
         st.read_wav(path)
@@ -193,7 +193,7 @@ def test_files_that_are_no_sound_or_say_no_scale(tmp_path):
     with pytest.raises(ValueError, match=r"^path must be a sound file, got '.*a\.wav': Format not recognised\.$"):
         st.read_wav(path)
     soundfile.write(path, np.array([0.0, 0.5]), 8000, subtype="PCM_16")
-    with pytest.raises(ValueError, match="full_scale must be given for a file that does not say its own"):
+    with pytest.raises(ValueError, match="full_scale must be given for a file without a stated full scale"):
         st.read_wav(path)
     assert list(st.read_wav(path, full_scale=4.0).values[:, 0]) == [0.0, 2.0]
 

@@ -1,4 +1,4 @@
-"""What every run must satisfy at each step, read from a record of every step."""
+"""Laws that every run must satisfy at each step, checked on a record of every step."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def violations(run, system: st.System) -> set[str]:
     state = run.friction_state.values.reshape(shape) if "friction_state" in run else np.zeros(shape)
     arrays = assemble(system)
     rows = np.abs(np.array([contact.fixed for contact in arrays.contacts])).sum(axis=(0, 1))
-    # What the largest force moves in a step.
+    # Displacement by the largest force in a step.
     pushed = step**2 * np.sum(rows**2) * np.abs(columns["normal_force"]).max()
     # A gap and a slip are sums of numbers up to the largest displacement, that of a belt included.
     travel = np.abs(columns["contact_position"]).max() + np.abs(columns["slip_velocity"]).sum(axis=0).max() * step
@@ -50,7 +50,7 @@ def violations(run, system: st.System) -> set[str]:
 
 
 def of_one(law, columns, state, step, small):
-    """Names of the laws that one contact breaks; `small` is what round-off makes of a displacement [m]."""
+    """Names of the laws that one contact breaks; `small` is the round-off of a displacement [m]."""
     status, normal, tangential = columns["status"], columns["normal_force"], columns["tangential_force"]
     gap, slip = columns["gap"], columns["slip_velocity"] * step
     closed = status != SEPARATED
@@ -63,7 +63,7 @@ def of_one(law, columns, state, step, small):
         yield "force at a distance"
     if np.any(normal[~closed] != 0) or np.any(tangential[~closed] != 0):
         yield "force while separated"
-    # The slip velocity that laws see, from the third step on, and how well it is known.
+    # The slip velocity in the laws, from the third step on, and its error.
     centred = (9 * slip[2:] + 6 * slip[1:-1] + slip[:-2]) / (16 * step)
     unsure = small / step
     rest = slice(2, None)
@@ -71,7 +71,7 @@ def of_one(law, columns, state, step, small):
         yield from of_state(law, normal[rest], tangential[rest], closed, state, centred, unsure, step)
         return
     stuck, sliding = status == STICKING, status == SLIDING
-    # In a step in which it turns round, forces are means over both senses.
+    # In a step in which the slip reverses, forces are means over both senses.
     turned = sliding & np.concatenate([[False], sliding[:-1] & (slip[1:] * slip[:-1] < 0)])
     if np.any(np.abs(tangential[turned]) > curve(law, 0.0) * normal[turned] * (1 + 1e-12) + TOLERANCE * peak):
         yield "turns outside the cone"
@@ -83,10 +83,10 @@ def of_one(law, columns, state, step, small):
         yield "slides the wrong way"
     if np.any((tangential * slip)[closed & one_way] < -np.abs(tangential[closed & one_way]) * small):
         yield "friction gives energy"
-    # What sticks, and what stops, is held by the static coefficient; only what lands is not.
+    # Contacts that stick or stop are held by the static coefficient, except those that land.
     was = np.concatenate([[True], closed[:-1]])
     held = np.array([held_up_to(law, before) for before in was])
-    # Viscous friction above the static one may bring a contact to rest: the ratio at the velocity seen holds, too.
+    # Viscous friction above the static one may bring a contact to rest: the ratio at its velocity is also allowed.
     high = np.array([curve(law, abs(v) + unsure) for v in centred])
     allowed = np.maximum(held, np.concatenate([[np.inf, np.inf], high]))
     if np.any(np.abs(tangential[stuck]) > allowed[stuck] * normal[stuck] * (1 + 1e-12) + TOLERANCE * peak):
@@ -102,7 +102,7 @@ def of_one(law, columns, state, step, small):
 
 
 def of_state(law, normal, tangential, closed, state, centred, unsure, step):
-    """Laws with internal state: the ratio of the law at velocity and state; not more energy than the state stores."""
+    """Laws with internal state: the ratio at velocity and state; no more energy than the state stores."""
     before, after = state[1:-1], state[2:]
     for n in np.flatnonzero(closed[2:]):
         ends = [ratio_with_state(law, before[n], centred[n] + d, step) for d in (-unsure, unsure)]
@@ -121,5 +121,5 @@ def of_state(law, normal, tangential, closed, state, centred, unsure, step):
 
 
 def passive_damping(law) -> float:
-    """Damping of the bristles up to which LuGre's law takes energy at any velocity."""
+    """Largest damping of the bristles for which LuGre's law dissipates energy at any velocity."""
     return 0.0 if law.static > law.kinetic else np.inf

@@ -1,7 +1,7 @@
 """Random blocks on one to eight feet under every law of friction: solved, laws at every step, ledger.
 
-As a program, ``python -m invariants.many_feet --count 10000`` in the folder of the tests, it takes as many, from a
-seed, and prints a line of counts; what fails is told with its number.
+As a program, ``python -m invariants.many_feet --count 10000`` in the folder of the tests, it runs that number from a
+seed and prints a line of counts; failures are printed with their number.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ LAWS = ("coulomb", "static", "stribeck", "exponential", "linear", "lugre", "agin
 
 
 def drawn(seed: int, number: int) -> Recipe:
-    """Return a block on feet, one to eight of them in turn, the laws mixed."""
+    """Return a block on one to eight feet in turn, with mixed laws."""
     random = np.random.default_rng((seed, number))
     count = 1 + number % MOST
     feet = tuple(
@@ -65,7 +65,7 @@ def drawn(seed: int, number: int) -> Recipe:
     return Recipe("block", feet, (mass,), springs, dashpots, load, speed, 0.0)
 
 
-def verdict(seed: int, number: int) -> tuple[str, set[str]]:
+def solution_and_faults(seed: int, number: int) -> tuple[str, set[str]]:
     """Return whether a drawn system is solved, and the laws that its run breaks."""
     recipe = drawn(seed, number)
     try:
@@ -78,7 +78,7 @@ def verdict(seed: int, number: int) -> tuple[str, set[str]]:
 
 
 def main() -> None:
-    """Take many and print what came of them."""
+    """Run many and print the results."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=0)
@@ -87,7 +87,7 @@ def main() -> None:
     numbers = range(asked.count) if asked.number is None else [asked.number]
     counts: dict[str, int] = {}
     for number in numbers:
-        how, broken = verdict(asked.seed, number)
+        how, broken = solution_and_faults(asked.seed, number)
         counts[how] = counts.get(how, 0) + 1
         if how != "solved" or broken:
             print(f"number {number}, {1 + number % MOST} contacts: {how} {', '.join(sorted(broken))}", flush=True)

@@ -159,7 +159,7 @@ def rigid(foot: Foot, units: Units) -> st.RigidTrack:
 
 
 def build(recipe: Recipe, units: Units | None = None) -> st.System:
-    """The system of a recipe in the units asked for."""
+    """The system of a recipe in given units."""
     units = units or Units()
     return {"chain": chain, "block": block, "slider": slider}[recipe.kind](recipe, units)
 
@@ -189,7 +189,7 @@ def chain(recipe, units):
 
 
 def block(recipe, units):
-    """x, y and turn of a rigid block, its turn as the motion of its edge at 1/2 of its length, and feet that give."""
+    """x, y and turn of a rigid block, its turn as the motion of its edge at half its length, and compliant feet."""
     count = len(recipe.feet)
     size = 3 + 2 * count
     mass = np.diag([recipe.masses[0]] * 2 + [recipe.masses[0] / 3] + [0.05 * recipe.masses[0]] * (2 * count))

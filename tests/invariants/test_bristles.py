@@ -66,7 +66,7 @@ def rows_of_feet(draw):
 
 
 def built(feet) -> st.System:
-    """The masses in a row, each joined to the one before by springs and dashpots of any direction."""
+    """The masses in a row, each joined to the previous one by springs and dashpots of any direction."""
     bodies = [st.RigidBody(foot.mass, name=f"mass {n}") for n, foot in enumerate(feet)]
     contacts, joints, drives = [], [], []
     for n, (body, foot) in enumerate(zip(bodies, feet, strict=True)):
@@ -115,7 +115,7 @@ def violations(run, system: st.System) -> set[str]:
             broken.add("bristles kept while separated")
         for n in np.flatnonzero(closed[2:, i]):
             known = ratios(contact.friction, state[n + 1, i], seen[n, i], STEP)
-            # What the velocity is unsure by makes of the ratio.
+            # Error of the ratio due to that of the velocity.
             law, unsure = contact.friction, small / STEP
             slope = 0.5 * law.stiffness * STEP + law.damping + law.viscous
             margin = 1e-7 * np.abs(known).max() + 4 * slope * unsure + TOLERANCE * normal[:, i].max() / normal[n + 2, i]

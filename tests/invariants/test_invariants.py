@@ -1,7 +1,7 @@
 """Laws, mirror image and units on random systems: masses, blocks, sliders, springs, dashpots, 1 to 3 contacts.
 
 A step is a sample, so that means are values. Steps in which several contacts have no common solution stop the run or
-are counted; such runs are left out here, see `test_stops`.
+are counted; such runs are left out here, see `test_stopped_runs`.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def off(one, other):
 @given(recipes(law=SMOOTH), schemes)
 @QUICK
 def test_mirror_image(recipe, scheme):
-    """x turned over: forces along x and positions change their sign and nothing else, to round-off.
+    """x reversed: forces along x and positions change their sign and nothing else, to round-off.
 
     300 steps, too few for a perturbation of 1e-16 to be seen, and no law that jumps.
     """
@@ -86,7 +86,7 @@ def test_mirror_image(recipe, scheme):
 
 
 def test_mirror_rejects_half_a_mirror():
-    """Negative control: the belt not turned round."""
+    """Negative control: the belt not reversed."""
     foot = Foot(st.Coulomb(0.5), 0.0, 0.0, 0.03, 0.0, 50.0)
     recipe = Recipe("chain", (foot,), (0.3,), (1e4,), (1.0,), 5.0, 0.0, 0.0)
     half = replace(recipe, feet=(replace(foot, belt=-0.03),))
@@ -191,7 +191,7 @@ def test_creep_harness_rejects_a_law_that_creeps():
 
 
 def broken(change, law):
-    """What the harness says of a mass on a belt under a law, its record changed."""
+    """Result of the harness for a mass on a belt under a law, with its record changed."""
     foot = Foot(law, 0.0, 0.0, 0.03, 0.02, 60.0)
     recipe = Recipe("chain", (foot,), (0.3,), (1e4,), (1.0,), 5.0, 0.1, 0.0)
     run = run_of(recipe, SCHEMES[1], 2000)
@@ -238,7 +238,7 @@ def leaking(run):
     ],
 )
 def test_harness_rejects_a_broken_law(change, law, words):
-    """Negative control: friction turned over or too weak, an overlap, a creep, a leak."""
+    """Negative control: friction reversed or too weak, an overlap, a creep, a leak."""
     assert words in broken(change, law)
 
 
@@ -267,7 +267,7 @@ def test_harness_rejects_a_penalty_contact():
 
 
 def test_harness_rejects_friction_with_the_wrong_sign():
-    """Negative control: the solve of one contact in plain Python, its friction turned round, in the place of ours."""
+    """Negative control: the solve of one contact in plain Python with reversed friction replaces the kernel's."""
     from stridula._kernels import contact as kernel
 
     law, step = st.Coulomb(0.4), 1e-4

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from .many_feet import LAWS, MOST, drawn, verdict
+from .many_feet import LAWS, MOST, drawn, solution_and_faults
 
 COUNT = 48
 
@@ -12,7 +12,7 @@ COUNT = 48
 @pytest.mark.parametrize("first", range(MOST))
 def test_random_feet_are_solved_and_obey_their_laws(first):
     for number in range(first, COUNT, MOST):
-        assert verdict(0, number) == ("solved", set()), number
+        assert solution_and_faults(0, number) == ("solved", set()), number
 
 
 def test_all_laws_are_drawn():
@@ -25,10 +25,10 @@ def test_all_laws_are_drawn():
 
 @pytest.mark.parametrize("number", [4186, 8566, 9262, 9389])
 def test_feet_that_could_slide_slowly_or_fast_stay_with_one(number):
-    """Weakening laws on feet that answer each other: without that the sweeps change from one to the other for ever."""
-    assert verdict(2, number) == ("solved", set())
+    """Weakening laws on coupled feet: otherwise the sweeps alternate between the two solutions for ever."""
+    assert solution_and_faults(2, number) == ("solved", set())
 
 
 def test_a_foot_whose_friction_ceases_to_fall_within_a_step_obeys_its_law():
     """The ratio of linear weakening is not expanded beyond its corner, where it would be 6e-7 too low."""
-    assert verdict(1, 2167) == ("solved", set())
+    assert solution_and_faults(1, 2167) == ("solved", set())

@@ -1,7 +1,7 @@
-"""March a little of every kind of run and print, as JSON, what each compiled function was compiled for and loaded.
+"""March a little of every kind of run and print, as JSON, the signatures that were compiled and loaded.
 
-A program of its own, `python -m kernels.every_kind`, so that the numba cache is all it begins with. With `first` it
-makes three runs only, with `other type` those and a call for which there is nothing in the cache.
+A separate program, `python -m kernels.every_kind`, that starts with the numba cache only. With `first` it makes three
+runs only, with `other type` these and a call that is not in the cache.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from kernels.systems import AGING, BELT, SYSTEMS, WEAK, oscillator, pad_on
 from stridula import _kernels
 
 STEPS = 40
-# Runs that compile everything.
+# Runs after which everything is compiled.
 FIRST = 3
 
 
@@ -80,7 +80,7 @@ def sizes() -> Iterator[Callable[[], object]]:
 
 
 def options() -> Iterator[Callable[[], object]]:
-    """Samples of many steps, one step, all probes, going on, records from files."""
+    """Samples of many steps, one step, all probes, continued runs, records from files."""
     system = CASES["squeal"]()
     points = (system.track.centre, system.slider.at(0.1))
     probes = [kind(point, "x") for kind in (st.Displacement, st.Velocity, st.Acceleration) for point in points]
@@ -93,7 +93,7 @@ def options() -> Iterator[Callable[[], object]]:
 
 
 def other_numbers() -> Iterator[Callable[[], object]]:
-    """Whole numbers and NumPy's own for floats, wherever a number goes."""
+    """Integers and NumPy scalars in place of floats in every argument."""
     system = SYSTEMS["chain on a belt"][0]()
     solve = st.GaussSeidel(np.float32(1e-6), np.int32(50))
     yield lambda: st.simulate(system, np.float32(0.1), step=np.float32(1e-4), sample_rate=10_000, contact_solve=solve)

@@ -46,7 +46,7 @@ def exact(stiffness, damping, h):
 
 
 def transition(stiffness, damping, h):
-    """What a time `h` makes of position, velocity and constant force in the position: three matrices."""
+    """Position after a time `h` from position, velocity and constant force: three matrices."""
     n = len(stiffness)
     rate = np.zeros((3 * n, 3 * n))
     rate[:n, n : 2 * n] = rate[n : 2 * n, 2 * n :] = np.eye(n)
@@ -123,7 +123,7 @@ def ratio_with_state(law, state, v, h):
 
 
 def bend(law, state):
-    """Slip speed above which the ratio of a law begins to bend."""
+    """Slip speed above which the ratio of a law departs from its linear part."""
     if isinstance(law, st.RateAndState):
         exponent = (law.reference + law.b * np.log(law.velocity * state / law.slip_distance)) / law.a
         return 2 * law.velocity * np.exp(-exponent)
@@ -140,7 +140,7 @@ def state_of_new(law):
 
 
 def states_of(before):
-    """What a contact may do: `given` is the ratio of its forces, where its motion at the start settles that."""
+    """Possible states of a contact: `given` is the ratio of its forces, if its motion at the start determines it."""
     if before.given is not None:
         return "open", "given"
     return ("open", "slide with state") if has_state(before.law) else ("open", "stick", 1, -1, "back")
@@ -175,8 +175,8 @@ def turned(gap, slip, own, before, let_go):
 def solve_contacts(gaps, slips, strayed, w, before, h, guess=None, let_go=()):
     """Return every consistent (combination, list of (status, normal, tangential)) of the contacts.
 
-    `gaps` and `slips` are what no contact force would lead to, ``w @ (N1, -T1, N2, ...)`` what forces add; `strayed` is
-    how far each stick has moved off its anchor. `before` has the law, last slip, state and last status of each. With a
+    `gaps` and `slips` are those without contact forces, which add ``w @ (N1, -T1, N2, ...)``; `strayed` is the distance
+    of each stick from its anchor. `before` has the law, last slip, state and last status of each. With a
     `guess` that combination comes first, and the first that is consistent is enough. Contacts that `let_go` are held
     by their kinetic coefficient, and slide where they could also stick.
     """
@@ -234,7 +234,7 @@ def solve_contacts(gaps, slips, strayed, w, before, h, guess=None, let_go=()):
 def forces_of(combination, gaps, slips, strayed, w, before, h, let_go):
     """Forces (N1, -T1, N2, ...) of a combination of states, or None.
 
-    The ratio of a contact that turns round depends on the forces of the others: it is iterated.
+    The ratio of a contact that reverses depends on the forces of the others: it is iterated.
     """
     backs = [i for i, kind in enumerate(combination) if kind == "back"]
     ratios = dict.fromkeys(backs, 0.0)
@@ -258,7 +258,7 @@ def forces_of(combination, gaps, slips, strayed, w, before, h, let_go):
 
 
 def forces_at(ratios, combination, gaps, slips, strayed, w, before, h):
-    """Forces of a combination, those that turn round with given ratios; linear but for the velocities of sliding."""
+    """Forces of a combination, with given ratios for reversals; linear except for the velocities of sliding."""
     laws = [b.law for b in before]
     curved = [
         i
@@ -313,7 +313,7 @@ def forces_at(ratios, combination, gaps, slips, strayed, w, before, h):
                 return given([v])
             reach *= 2
         return None
-    # v = s sinh(y), so that creep is on one line with sliding.
+    # v = s sinh(y), so that creep and sliding have similar scales.
     scales = np.array([bend(laws[i], before[i].state) for i in curved])
     unit = np.abs(free).max() + max(abs(before[i].last_slip) / h for i in curved) + 1e-12
     for start in ([before[i].last_slip / h for i in curved], free):
@@ -403,7 +403,7 @@ class Matrices:
 
 
 class Touch:
-    """One contact: its rows at an abscissa, its imposed motions, and what it carries."""
+    """One contact: its rows at an abscissa, its imposed motions, and its state between steps."""
 
     def __init__(self, contact, matrices):
         self.contact, self.matrices = contact, matrices
@@ -486,7 +486,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         return d @ inverse @ (d + b @ d) / 4
 
     def begin(q_before):
-        """What the contacts carry at the start; return those that are closed."""
+        """Initialise the contacts; return those that are closed."""
         for one in touches:
             x = one.contact.at
             gap_row, slip_row, _ = one.rows(x)
@@ -556,10 +556,10 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             for one, motion, trace in zip(touches, motions, traces, strict=True)
         ]
         strayed = [one.material - one.anchor if one.status == STICKING else 0.0 for one in touches]
-        # Every combination is tried at one step in ten, to count those that are consistent.
+        # All combinations are tried at one step in ten, to count the consistent ones.
         found = solve_contacts(gaps, slips, strayed, rows @ load @ rows.T, touches, h, guess if n % 10 else None)
         if not found:
-            # A foot that slides may be brought back under its static limit by the answer of another: it lets go.
+            # The response of another foot may bring a sliding foot below its static limit: it still slides.
             feet = range(len(touches))
             for let_go in (subset for size in range(1, len(feet) + 1) for subset in combinations(feet, size)):
                 found = solve_contacts(gaps, slips, strayed, rows @ load @ rows.T, touches, h, None, let_go)

@@ -64,7 +64,7 @@ def on_a_table() -> list[st.System]:
 
 
 def off_the_track() -> list[st.System]:
-    """The second run leaves its track, the others go on."""
+    """The second run leaves its track, the others continue."""
     return [
         pair(dragged(0.5, 5.0), 0.6, gap=1e-9, at=at, rod=slider(**ROD), bar=track(**BAR))
         for at in (0.2, 0.8 - 2e-5, 0.5)
@@ -79,7 +79,7 @@ def round_a_disc() -> list[st.System]:
 
 
 def on_three_feet() -> list[st.System]:
-    """A block whose feet touch a belt in each run in another order, the last of them in one run never."""
+    """A block whose feet touch a belt in a different order in each run, the last one never in one run."""
     stiffness, points = np.zeros((8, 8)), {"back": np.eye(2, 8)}
     for number in range(3):
         own = slice(2 + 2 * number, 4 + 2 * number)
@@ -132,9 +132,9 @@ class Prepared:
 
 
 def marched(kind, prepared) -> list[dict[str, np.ndarray]]:
-    """Return, for each run, what it left."""
+    """Return the results of each run."""
     march = kind([one.blocks for one in prepared], [one.state for one in prepared], STEP, RATIO)
-    # What a copy does is its own affair.
+    # A copy does not affect the original.
     march.copy().advance([one.imposed(0, 1) for one in prepared], 1)
     left, first = [], 0
     for samples in CHUNKS:
@@ -144,7 +144,7 @@ def marched(kind, prepared) -> list[dict[str, np.ndarray]]:
 
 
 def summary(chunks, state) -> dict[str, np.ndarray]:
-    """Return what a run left, kind by kind, as far as each chunk came."""
+    """Return the results of a run by kind, up to the end of each chunk."""
     done = [chunk.completed for chunk in chunks]
     return {
         "energies": np.concatenate([chunk.energies[:n] for chunk, n in zip(chunks, done, strict=True)]),
@@ -184,13 +184,13 @@ def difference(kind, one, other) -> float:
 
 
 def columns(prepared) -> dict[str, int]:
-    """Return how many columns what is written of contacts has."""
+    """Return the number of columns recorded for contacts."""
     contacts = CudaMarch([one.blocks for one in prepared], [one.state for one in prepared], STEP, RATIO).contacts
     return {name: getattr(contacts, name).shape[-1] for name in ("faces", "scratch", "places", "now", "sums")}
 
 
 def compare(systems) -> dict[str, object]:
-    """Return the largest differences kind by kind, the least from the run beside it, and how each run ended."""
+    """Return the largest differences by kind, the smallest from the neighbouring run, and the end of each run."""
     prepared = [Prepared(system) for system in systems]
     together = marched(CudaMarch, prepared)
     alone = [marched(March, [one])[0] for one in prepared]

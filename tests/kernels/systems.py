@@ -1,4 +1,4 @@
-"""Systems with everything new: bodies, connections, tracks, laws, several contacts; each with the step to march at."""
+"""Systems of all kinds: bodies, connections, tracks, laws, several contacts; each with the time step."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def on_a_plate(line=None, angle=30.0, **changes) -> st.System:
 
 
 def soft(line=None, **changes) -> st.ModalPlate:
-    """A sheet so soft that it stretches and shears where others bend, of 0.3 m x 0.2 m x 40 mm."""
+    """A soft thick sheet whose modes in its plane are as low as those of bending, 0.3 m x 0.2 m x 40 mm."""
     words = {"damping": 0.02, "cutoff": 1.5e3, "line": line, "in_plane": True} | changes
     return st.ModalPlate(st.Material(2e7, 1000.0, 0.4), 0.04, 0.3, 0.2, **words)
 

@@ -132,7 +132,7 @@ def twin(scheme, law=LAW):
     z, out = np.zeros(2), SimpleNamespace(normal=[], tangential=[], state=[], slip=[])
     for n in range(STEPS):
         free = a @ q - b @ q_before + load @ force
-        # Of the integral of the sine from zero on.
+        # For the integral of the sine from zero.
         rise = LIFT * (1 - np.cos(2 * np.pi * FREQUENCY * (n + 1) * STEP)) / (2 * np.pi * FREQUENCY)
         gap, slip = GAP - rise + rows[0] @ free, rows[1:] @ (free - q) - belt * STEP
         pushes, velocity = np.zeros(3), None

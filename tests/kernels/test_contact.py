@@ -46,7 +46,7 @@ def solve(gap, slip, w, mu, last_slip=0.0):
 
 
 def clear_of_borders(gap, slip, w, mu):
-    """Keep away from the border of the cone, where round-off decides between two states that give the same forces."""
+    """Avoid the border of the cone, where round-off decides between two states with the same forces."""
     if gap >= 0:
         return True
     normal, minus = np.linalg.solve(w, [-gap, -slip])
@@ -100,7 +100,7 @@ def test_laws_hold(gap, slip, turn, flat, mu):
 @given(lengths, lengths, turns, flats, frictions)
 @settings(max_examples=300, deadline=None)
 def test_mirror_image(gap, slip, turn, flat, mu):
-    """Turning x round changes the sign of slip, W_NT and tangential force, and nothing else: bit for bit."""
+    """Reversing x changes the sign of slip, W_NT and tangential force, and nothing else: bit for bit."""
     w = compliance(turn, flat)
     mirrored = w * np.array([[1, -1], [-1, 1]])
     one, other = solve(gap, slip, w, mu), solve(gap, -slip, mirrored, mu)
@@ -110,7 +110,7 @@ def test_mirror_image(gap, slip, turn, flat, mu):
 @given(lengths, lengths, turns, flats, frictions, some.floats(-20, 20))
 @settings(max_examples=200, deadline=None)
 def test_forces_scale_with_displacements_and_stiffness(gap, slip, turn, flat, mu, power):
-    """The laws know no scale: displacements times 2^p and compliances times 2^m give forces times 2^(p-m)."""
+    """The laws have no scale: displacements times 2^p and compliances times 2^m give forces times 2^(p-m)."""
     w, p = compliance(turn, flat), 2.0 ** round(power)
     normal, tangential, status, jammed, *_ = solve(gap, slip, w, mu)
     larger = solve(gap * p, slip * p, w * 4.0, mu)
@@ -144,7 +144,7 @@ def test_painleve_jam_is_reached():
 
 
 def test_harness_rejects_a_wrong_solve():
-    """Negative control: with the sign of W_NT turned over, the state found is not consistent for most random cases."""
+    """Negative control: with the sign of W_NT reversed, the state found is not consistent for most random cases."""
     random = np.random.default_rng(7)
     wrong = 0
     for _ in range(200):
@@ -198,7 +198,7 @@ def test_a_slip_that_ends_within_the_step(gap, slip, turn, flat, mu, last_slip):
 def test_a_block_that_turns_round_moves_as_its_two_parabolas():
     """Mass m under a push F, friction mu N, h = 1: v = d before, then v' = (F -+ mu N)/m up to and after its stop.
 
-    Over a step about the stop the velocity goes from d to (1 - d / (F + mu N)) times -(F - mu N), whatever the share;
+    Over a step about the stop the velocity goes from d to (1 - d / (F + mu N)) times -(F - mu N), for any share;
     without the treatment it is 0 or d - (F - mu N).
     """
     mass, push, mu, normal = 2.0, 3.0, 0.5, 1.6

@@ -1,4 +1,4 @@
-"""The march on a graphics card, by numba's simulator of one, and what is said where there is none."""
+"""The march on a graphics card, by numba's simulator, and the error without a card."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ PATHS = (Path(__file__).parents[1], Path(stridula.__file__).parents[1])
 
 @pytest.fixture(scope="module")
 def comparisons():
-    """What the simulator found, by case; it is chosen when numba is imported, so it needs another interpreter."""
+    """Results of the simulator by case; it is selected when numba is imported, so it needs another interpreter."""
     words = {"NUMBA_ENABLE_CUDASIM": "1", "PYTHONPATH": os.pathsep.join(map(str, PATHS))}
     program = [sys.executable, "-m", "kernels.on_the_simulator"]
     done = subprocess.run(program, env=os.environ | words, capture_output=True, text=True)
@@ -39,14 +39,14 @@ def test_a_thread_marches_a_run_as_it_marches_alone(comparisons, case):
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_runs_side_by_side_are_told_apart(comparisons, case):
-    """Negative control: a run that were its neighbour's would be seen."""
+def test_neighbouring_runs_are_distinguished(comparisons, case):
+    """Negative control: a run equal to its neighbour's would be detected."""
     assert comparisons[case]["beside"] > 1e-3
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_no_thread_writes_where_another_one_does(comparisons, case):
-    """The simulator takes one thread after the other, and would not see it."""
+    """The simulator runs one thread after the other, and would not detect it."""
     found = comparisons[case]
     assert set(found["columns"].values()) == {len(found["ended"])}, found["columns"]
 

@@ -1,6 +1,6 @@
 """The compiled march against its general twin, step by step, for everything that a system may hold.
 
-The twin follows the two-position form with one matrix for all modes; see `test_march` for what its cancellation costs:
+The twin follows the two-position form with one matrix for all modes; see `test_march` for its loss by cancellation:
 1e-8 of the peak for positions and energies, 1e-6 for forces. A height is compared on the scale of all displacements.
 """
 
@@ -53,7 +53,7 @@ def disagreements(run, trail) -> dict[str, float]:
         off = np.nanmax(np.abs(values - expected))
         if off > tolerance * peak + least * (name in ENERGIES):
             found[name] = off / max(peak, 1e-300)
-    # A height may be zero all along: on the scale of what moves.
+    # A height may be zero throughout: relative to all displacements.
     moved = max(np.abs(trail.height).max(), np.ptp(trail.position))
     for name in ("gap", "contact_height"):
         expected = trail.gap if name == "gap" else trail.height
@@ -63,7 +63,8 @@ def disagreements(run, trail) -> dict[str, float]:
     status = run.status.values.reshape(trail.status.shape)
     if np.any(status != trail.status):
         found["status"] = float(np.mean(status != trail.status))
-    # A share is a ratio of what a gap or a force misses of its border, down to a hundredth of the peaks of COLUMNS.
+    # A share is a ratio of the distances of a gap or a force from its border, down to a hundredth of the peaks of
+    # COLUMNS.
     off = np.abs(run.status_share.values.reshape(trail.share.shape) - trail.share).max()
     if off > 1e-4:
         found["status_share"] = off
@@ -79,7 +80,7 @@ def test_kernel_and_twin_agree_at_every_step(name, scheme, form):
     make, step = SYSTEMS[name]
     run, trail = both(make(), scheme, form, step)
     assert disagreements(run, trail) == {}
-    # Every combination of states was tried at one step in ten: never more than one held.
+    # All combinations of states were tried at one step in ten: never more than one was consistent.
     assert set(trail.solutions) == {1}
     assert "unsolved_steps" not in run or not run.unsolved_steps.any()
     assert set(np.unique(trail.status)) - {0}, "no contact in the steps compared: the case tests nothing"
@@ -155,7 +156,7 @@ def slightly(change, system):
     ],
 )
 def test_comparison_rejects_a_wrong_twin(change, name):
-    """Negative control: what both should share is a little different in the twin."""
+    """Negative control: a shared value is slightly different in the twin."""
     make, step = SYSTEMS[name]
     system = make()
     run, _ = both(system, SCHEMES[1], twin.exact, step, 1)
@@ -164,7 +165,7 @@ def test_comparison_rejects_a_wrong_twin(change, name):
 
 
 @pytest.mark.parametrize("wrong", ["polarisations", "slopes"])
-def test_comparison_tells_motion_in_the_plane(wrong, monkeypatch):
+def test_comparison_detects_wrong_motion_in_the_plane(wrong, monkeypatch):
     """Negative control: shear modes that move the other way across; slopes of the plane left out of the ledger."""
     make, step = SYSTEMS["sprung plate soft in its plane"]
     run, trail = both(make(), SCHEMES[1], twin.exact, step)
@@ -185,7 +186,7 @@ def test_comparison_tells_motion_in_the_plane(wrong, monkeypatch):
     assert (wrong == "slopes") == (len(found) == 1)
 
 
-def test_comparison_tells_an_exact_damping_matrix_from_its_diagonal():
+def test_comparison_distinguishes_an_exact_damping_matrix_from_its_diagonal():
     """Negative control: the block's damping, which couples its modes, projected on the diagonal."""
     make, step = SYSTEMS["thrown block"]
     system = make()
@@ -207,7 +208,7 @@ def test_comparison_tells_an_exact_damping_matrix_from_its_diagonal():
     assert disagreements(run, twin.march(system, twin.exact, step, STEPS))
 
 
-def test_comparison_tells_the_mean_of_the_state_from_its_last_value(monkeypatch):
+def test_comparison_distinguishes_the_mean_of_the_state_from_its_last_value(monkeypatch):
     """Negative control: bristles whose force takes the deflection at the start of the step, explicit Euler's."""
 
     def at_start(law, state, v, h):
@@ -221,7 +222,7 @@ def test_comparison_tells_the_mean_of_the_state_from_its_last_value(monkeypatch)
 
 
 def test_one_contact_of_coupled_modes_takes_one_sweep():
-    """It is solved exactly: nothing is left to iterate."""
+    """It is solved exactly, without iteration."""
     make, step = SYSTEMS["frozen contact"]
     words = {"step": step, "sample_rate": 1 / step, "probes": []}
     once = st.simulate(make(), 2000 * step, contact_solve=st.GaussSeidel(sweeps=1), **words)

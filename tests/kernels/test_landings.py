@@ -54,7 +54,7 @@ def test_runs_side_by_side_count_their_own():
 
 
 def test_a_contact_that_starts_at_rest_on_its_track_does_not_land():
-    """Neither does the one of the belt that sticks from the start nor one that is dragged from there."""
+    """Neither a contact that sticks to the belt from the start nor one that is dragged."""
     system = st.load_scenario("belt").system
     dragged = replace(system, drives=[*system.drives, st.InitialVelocity(system.slider, x=5.0)])
     for one, status in ((system, 1), (dragged, 2)):

@@ -1,4 +1,4 @@
-"""What the functions of `lanes` come to on vectors is what their plain code says of every lane."""
+"""The functions of `lanes` on vectors give the result of their plain code on every lane."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def test_multiples_of_eight_runs(count, first):
     angles = (first + np.arange(count))[:, None] * thetas
     np.testing.assert_allclose(rows[:, 0], np.sin(angles), atol=4e-16 * (count + 1), rtol=0)
     np.testing.assert_allclose(rows[:, 1], np.cos(angles), atol=4e-16 * (count + 1), rtol=0)
-    # Nothing beyond the blocks asked for, and of a block nothing but the two rows.
+    # Nothing beyond the given blocks changes, and in a block only the two rows.
     assert not rows[:, 2:].any()
 
 

@@ -1,4 +1,4 @@
-"""The compiled ledger against plain NumPy: the same samples are believed, to the last one."""
+"""The compiled ledger against plain NumPy: exactly the same samples are accepted."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def ledger(random, samples):
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_what_is_believed_is_what_plain_numpy_believes(seed):
+def test_accepted_samples_are_those_of_plain_numpy(seed):
     random = np.random.default_rng(seed)
     energies, initial = ledger(random, 80)
     before = np.zeros(at.ENERGIES)

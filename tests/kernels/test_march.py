@@ -62,7 +62,8 @@ def test_kernel_and_twin_agree_at_every_step(name, scheme, form):
     assert set(run.status.values) - {0}, "no contact in the steps compared: the case tests nothing"
     np.testing.assert_array_equal(run.status.values, trail.status)
     np.testing.assert_array_equal(run.landings.values, trail.landings)
-    # A share is a ratio of what a gap or a force misses of its border, down to a hundredth of the peaks of COLUMNS.
+    # A share is a ratio of the distances of a gap or a force from its border, down to a hundredth of the peaks of
+    # COLUMNS.
     np.testing.assert_allclose(run.status_share.values, trail.share, atol=1e-4)
     assert disagreements(run, trail) == {}
     position, before = trail.last[1], trail.last[0]

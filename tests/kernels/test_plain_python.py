@@ -1,4 +1,4 @@
-"""The march without its compiler, as a debugger steps through it, gives what the compiled one gives."""
+"""The march without compilation, as in a debugger, gives the results of the compiled one."""
 
 from __future__ import annotations
 

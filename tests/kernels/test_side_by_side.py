@@ -57,7 +57,7 @@ def test_runs_side_by_side_are_those_alone(name, monkeypatch):
 
 
 @pytest.mark.parametrize("name", ["pad on a beam", "pad on a shaken belt", "two sliders", "frozen contact", "plate"])
-def test_which_runs_lie_beside_it_does_not_matter(name):
+def test_neighbouring_runs_do_not_matter(name):
     make, step = SYSTEMS[name]
     system = make()
     among = {
@@ -72,7 +72,7 @@ def test_which_runs_lie_beside_it_does_not_matter(name):
         np.testing.assert_array_equal(among[0.3][quantity], among[1.7][quantity])
 
 
-def test_harness_tells_a_run_from_its_neighbour():
+def test_harness_distinguishes_a_run_from_its_neighbour():
     """Negative control."""
     make, step = SYSTEMS["pad on a beam"]
     one, other = (

@@ -86,7 +86,7 @@ def slide(gap, slip, w, ratio):
 
 @dataclass
 class Trail:
-    """What the twin kept, a list entry a step, and its last two positions."""
+    """Results of the twin, a list entry for each step, and its last two positions."""
 
     normal: list = field(default_factory=list)
     tangential: list = field(default_factory=list)
@@ -149,7 +149,7 @@ def drives_of(system, slider, track, held, h):
 
 
 def closed_until(closed, status, normal, tangential, gap, w):
-    """Share of the step before in which a contact of that `status` was closed, that ends as the force turns round."""
+    """Share of the previous step in which a contact of that `status` was closed, until its force changed sign."""
     if status == 0 or gap < 0:
         return closed
     missing = gap / (w[0, 0] - tangential / normal * w[0, 1])
@@ -157,7 +157,7 @@ def closed_until(closed, status, normal, tangential, gap, w):
 
 
 def stuck_until(normal, tangential, gap, slip, w, mu):
-    """Share of the step before in which a contact still stuck that slides now, as its force leaves the cone."""
+    """Share of the previous step in which a contact that slides now still stuck, until its force left the cone."""
     pressed, needed = np.linalg.solve(w, [-gap, -slip]) * [1, -1]
     sense = np.sign(needed)
     margins = [mu * n - sense * t for n, t in ((normal, tangential), (pressed, needed))]

@@ -1,4 +1,4 @@
-"""The paper, claim by claim: a claim that held must go on holding."""
+"""The paper, claim by claim: a claim that held must continue to hold."""
 
 import json
 
@@ -13,7 +13,7 @@ from stridula.papers.laulagnet_2011.figures import FIGURES
 from stridula.papers.laulagnet_2011.reproduce import claims_table, closing_line
 from stridula.papers.laulagnet_2011.runs import CASES, LADDER, STARTS, Runs, ending, median_over_starts
 
-# What the shipped set misses, explained in docs/paper-search.rst.
+# Claims that the shipped set misses, explained in docs/paper-search.rst.
 MISSED = (
     "least rise of frequency from 20 to 40, 80, 150 N, in resolutions",
     "10 to 200 N: rise of the median frequency, without a fall",
@@ -146,7 +146,7 @@ def test_ending(last, words):
 
 
 def test_reproduce_writes_figures_records_and_claims(tmp_path, monkeypatch):
-    """The whole chain on a short claim list: what is written is what was run."""
+    """The whole chain on a short list of claims: written files agree with the runs."""
     module = __import__("stridula.papers.laulagnet_2011.reproduce", fromlist=["reproduce"])
     monkeypatch.setattr(module, "CLAIMS", CLAIMS[:2])
     monkeypatch.setattr(module, "FIGURES", FIGURES[:2])

@@ -9,7 +9,7 @@ import stridula as st
 STEEL = st.Material(young=2.1e11, density=7800.0)
 STRIP = st.Rectangle(0.020, 0.004)
 
-# For the simulations that only look at the march: few modes, so that a step of 5 us is far below both limits.
+# For tests of the march alone: few modes, so that a step of 5 us is far below both limits.
 CUTOFF = 15e3
 STEP = 5e-6
 SCHEMES = [st.CentralDifference(), st.ExactModal()]

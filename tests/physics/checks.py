@@ -1,4 +1,4 @@
-"""What runs of every kind of system are checked for: side by side as alone, in two parts as in one."""
+"""Checks of runs of every kind of system: side by side as alone, in two parts as in one."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def same_side_by_side(systems, duration, names=FORCES, **words):
 
 
 def goes_on(system, duration, names, folder, **words):
-    """A run that goes on from the file of its first half is the whole one to the last bit.
+    """A run continued from the file of its first half is the whole one to the last bit.
 
     Returns the whole, its first half, the rest, and the scenario that the whole is read as.
     """

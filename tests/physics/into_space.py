@@ -16,9 +16,9 @@ from stridula.system import System
 
 @dataclass
 class IntoSpace:
-    """What turns systems of the plane: bodies placed, all that acts on them along directions that are turned.
+    """Converter of systems of the plane: bodies placed in space, all that acts on them along rotated directions.
 
-    A point mass becomes a rigid body, which moves across the plane, too; a reduced body stays one, tracks lie in
+    A point mass becomes a rigid body, which also moves across the plane; a reduced body stays one, tracks lie in
     another plane, and other bodies are placed there. `across` is the largest force across the plane over the largest
     normal force, of all runs.
     """
@@ -111,7 +111,7 @@ class IntoSpace:
 
 
 def _points(flat: System, probes: Sequence[Any]) -> dict[Any, dict[str, Any]]:
-    """Return the positions asked of each body, by what they are called in space."""
+    """Return the positions used on each body, by their names in space."""
     found: dict[Any, dict[str, Any]] = {body: {} for body in flat.bodies}
     points = [point for contact in flat.contacts for point in (contact.tip, contact.touched_point) if point is not None]
     points += [drive.push[1] for drive in flat.drives if drive.push is not None]

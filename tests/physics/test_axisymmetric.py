@@ -66,7 +66,7 @@ def thin_annulus(n: int, inner: float, nu: float) -> float:
 
 
 def thin(body_of_thickness, order: int, scale, count: int = 1) -> np.ndarray:
-    """What scaled frequencies of an order tend to as a plate gets thin.
+    """Limit of scaled frequencies of an order for thin plates.
 
     From three thicknesses h, h / 2, h / 4, without the parts that go with h, a clamp that holds the faces and a free
     edge that twists, and with h², shear and rotatory inertia; and each from cells of h and of h / 2, whose error falls
@@ -83,7 +83,7 @@ def thin(body_of_thickness, order: int, scale, count: int = 1) -> np.ndarray:
 
 @pytest.mark.parametrize(("n", "known"), [(0, 6.660), (1, 6.552), (2, 7.956), (3, 13.27)])
 def test_a_thin_annulus_is_that_of_leissa(n, known):
-    """Leissa 1969, Vibration of Plates, table 2.24, whose four digits Kirchhoff's equation gives, too.
+    """Leissa 1969, Vibration of Plates, table 2.24, whose four digits also follow from Kirchhoff's equation.
 
     The cube of the thickness, at k h = 0.1, may leave some 1e-4.
     """
@@ -155,7 +155,7 @@ def test_a_ring_without_lateral_contraction_bends_as_a_curved_beam(n):
 def test_a_ring_of_steel_lies_between_a_beam_and_a_plate():
     """Ansys VM302, after Genta 2005, has 209.929 Hz for n = 3, in shells of finite size, and 75.299 Hz for n = 2.
 
-    The latter is not that of a free ring: its frequencies are in the ratio 2.828, whatever its bending stiffness is.
+    The latter is not that of a free ring: its frequencies are in the ratio 2.828 for any bending stiffness.
     """
     steel = st.Material(2.1e11, 7850.0, 0.3)
     body = ring(steel)
@@ -255,8 +255,8 @@ def test_a_ball_has_the_same_modes_about_any_axis():
     """Lamb 1882: a mode of degree l is there in the orders 0 to l alike, one frequency for 2 l + 1 modes.
 
     Torsional: ``(l - 1) j_l(x) = x j_l+1(x)`` with ``x = w R / c_T``; breathing: ``(1 - (c_L x / 2 c_T)²) tan x = x``
-    with ``x = w R / c_L``. Straight sides between corners on circles take a share of the ball that falls by four; what
-    is left then is the error of the coarser elements.
+    with ``x = w R / c_L``. Straight sides between corners on circles remove a part of the ball that falls by four; what
+    remains is the error of the coarser elements.
     """
     radius, slow = 0.1, math.sqrt(2.1e11 / 2.6 / 7800.0)
     fast = slow * math.sqrt(3.5)
@@ -295,7 +295,7 @@ SPOTS = [(0.12, 0.3, 0.01), (0.03, -2.0, 0.0), (0.05, 1.1, 0.03), (0.06, 4.0, 0.
 
 
 def test_a_free_body_has_six_motions_without_frequency():
-    """They move all points as a rigid body does, and carry the whole mass."""
+    """They are rigid motions, and carry the whole mass."""
     modes = HATTED.modes()
     assert (modes.frequency[:6] == 0.0).all()
     assert (modes.frequency[6:] > 100.0).all()
@@ -310,7 +310,7 @@ def test_a_free_body_has_six_motions_without_frequency():
     along = modes.translation
     np.testing.assert_allclose(along[:, :6] @ along[:, :6].T, mass * np.eye(3), atol=1e-12 * mass)
     np.testing.assert_allclose(along[:, 6:], 0.0, atol=1e-9 * math.sqrt(mass))
-    # As a whole it moves as its translation says.
+    # Its rigid translation agrees with the modes.
     for spot in SPOTS:
         np.testing.assert_allclose(HATTED.trace(spot) @ along.T, np.eye(3), atol=1e-10)
 
@@ -381,7 +381,7 @@ def test_pairs_have_one_frequency_and_stand_together():
 
 
 def test_shapes_are_orthogonal_and_of_unit_mass():
-    """By an integral over the whole body, of Gauss points of its own."""
+    """By an integral over the whole body, with independent Gauss points."""
     x, weight = np.polynomial.legendre.leggauss(5)
     body = replace(HATTED, profile=replace(HATTED.profile, size=0.01), cutoff=6000.0, orders=3)
     angles = 2.0 * np.pi * np.arange(9) / 9.0
@@ -417,7 +417,7 @@ def test_no_mode_below_the_cutoff_is_missed():
 
 
 def test_a_thin_flange_on_a_thick_hub_has_all_its_orders():
-    """Those of the flange, whose waves are a fifth as long as the hub's; or as many as are asked for."""
+    """Those of the flange, whose waves are a fifth as long as the hub's; or the requested number."""
     profile = st.RectangleProfile({"hub": ((0.0, 0.02), (0.0, 0.04)), "flange": ((0.02, 0.06), (0.0, 0.001))})
     body = st.AxisymmetricBody(profile, STEEL, 6000.0)
     last = int(body.numbers[:, 0].max())
@@ -431,7 +431,7 @@ def test_a_thin_flange_on_a_thick_hub_has_all_its_orders():
 
 
 def test_like_discs_on_one_shaft_have_their_modes_twice():
-    """Frequencies that rounding cannot tell apart are found both."""
+    """Both of two frequencies that differ by rounding only are found."""
     shaft, length = ((0.0, 0.01), (0.0, 0.6)), 0.6
     discs = [((0.01, 0.1), (0.1, 0.104)), ((0.01, 0.1), (length - 0.104, length - 0.1))]
     profile = st.RectangleProfile([("steel", one) for one in (shaft, *discs)], size=0.02)
@@ -474,7 +474,7 @@ def test_with_residual_shapes_points_yield_alike_whatever_the_cutoff(held):
 
 
 def test_residual_shapes_give_the_static_answer_of_each_order():
-    """A force along z on a held body: the sum over orders of dense solutions; and its fall in its own weight."""
+    """A force along z on a held body: the sum over orders of dense solutions; also under its own weight."""
     elements = _solution(SOFTER).elements
     held = elements.points_on(SOFTER.mesh.sides_of("hat.top"))
     count = elements.count

@@ -13,7 +13,7 @@ from stridula.verification.systems.discs import HERE, struck
 from .test_open_air import EARS
 from .test_radiation import AIR, BLOW, PLATE, RATE, WIDTH, baffled_spectrum, error, known
 
-# Of the violin through a plate of spruce a metre above it [dB].
+# Level of the violin through a plate of spruce a metre above it [dB].
 LEVEL = 89.0
 
 
@@ -29,7 +29,7 @@ def record(force: np.ndarray, rate: float = RATE) -> xr.Dataset:
 
 
 def test_a_plate_under_a_string_sounds_as_spectra_say():
-    """A force up sounds as one that presses down, with the other sign; the place is that of a contact's line."""
+    """An upward force sounds like a downward one with the other sign; the place is that of a contact's line."""
     samples, listener = 1500, (0.2, -0.15, 0.4)
     blow = record(np.exp(-(((np.arange(1, samples + 1) / RATE - BLOW) / WIDTH) ** 2)))
     x, y = panel_of(PLATE).place(np.array(0.09))
@@ -64,7 +64,7 @@ def test_a_body_in_space_sounds_as_the_march_of_the_same_force():
 
 
 def test_the_violin_is_heard_through_a_plate():
-    """What one would do: the string of the shipped case on the middle of a thin plate of spruce."""
+    """A typical use: the string of the shipped case on the middle of a thin plate of spruce."""
     run = st.load_scenario("violin", {"simulation.duration": 0.3}).simulate()
     spruce = st.Material(8e9, 430.0, 0.3)
     top = st.ModalPlate(spruce, 3e-3, 0.35, 0.2, cutoff=10e3, damping=0.01, name="top")
@@ -72,14 +72,14 @@ def test_the_violin_is_heard_through_a_plate():
     late = heard.values[len(heard) // 2 :, 0]
     spectrum = np.abs(np.fft.rfft(late * np.hanning(len(late))))
     frequency = np.fft.rfftfreq(len(late), float(heard.time[1] - heard.time[0]))
-    # Partials of the string, each by what the top makes of it.
+    # Partials of the string, each through the response of the top.
     harmonic = np.abs(frequency / 195.4 - np.round(frequency / 195.4)) < 0.1
     assert (spectrum[harmonic] ** 2).sum() > 0.9 * (spectrum**2).sum()
     assert "continues another" not in heard.attrs["notes"]
     assert float(st.equivalent_level(heard).max()) == pytest.approx(LEVEL, abs=1.0)
 
 
-def test_a_force_that_was_there_before_does_not_thump():
+def test_a_force_present_before_the_start_makes_no_transient():
     cut = record(np.full(500, 3.0)).assign_coords(time=0.1 + np.arange(500) / RATE)
     steady = st.radiate(cut, st.Bridge(PLATE.at(0.09), probe="D string left end"), air=AIR)
     assert not steady.values.any()
@@ -94,16 +94,16 @@ def test_a_force_that_was_there_before_does_not_thump():
         ({"probe": "D string left end", "direction": "x"}, "direction must have a part along the normal of the body"),
     ],
 )
-def test_what_is_refused(words, message):
+def test_bad_arguments_are_refused(words, message):
     with pytest.raises(ValueError, match=f"^{message}"):
         st.radiate(record(np.ones(100)), st.Bridge(PLATE.at(0.1), **words))
 
 
-def test_records_without_such_a_force_are_refused():
+def test_records_without_a_support_force_are_refused():
     run = record(np.ones(100)).drop_vars("support_force")
     with pytest.raises(ValueError, match=r"^run must have a SupportForce probe for a Bridge"):
         st.radiate(run, st.Bridge(PLATE.at(0.1)))
-    with pytest.raises(ValueError, match=r"^bodies must be left out but for a System"):
+    with pytest.raises(ValueError, match=r"^bodies must be left out unless a System is given"):
         st.radiate(run, st.Bridge(PLATE.at(0.1)), bodies=[PLATE])
     with pytest.raises(ValueError, match=r"^point must be a BodyPoint"):
         st.Bridge(PLATE)

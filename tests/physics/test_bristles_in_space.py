@@ -40,7 +40,7 @@ def skewed(law, along: float) -> st.System:
 
 @pytest.mark.parametrize("along", [0.0, 0.7, -2.0])
 def test_the_plane_is_returned_under_any_rotation(along):
-    """Landings, sticks and reversals; the tangents turned about the normal, too."""
+    """Landings, sticks and reversals; also with the tangents turned about the normal."""
     words = {"step": 5e-6, "sample_rate": 2e5, "probes": []}
     system = skewed(LAW, along)
     flat, space = (st.simulate(one, 0.01, **words) for one in (in_the_plane(LAW), system))
@@ -70,7 +70,7 @@ def sprung(degrees: float, speed: float, law=LAW, mass: float = 0.5, spring: flo
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("degrees", [0.0, 30.0, 100.0, 180.0, 265.0, 301.0])
 def test_steady_sliding_has_its_force_along_the_slip(degrees, scheme):
-    """``(g + viscous |v|) N`` on the track along the slip; a start in equilibrium stays there, another comes there."""
+    """``(g + viscous |v|) N`` on the track along the slip; a start in equilibrium stays there, others converge."""
     speed, system = 0.1, sprung(degrees, 0.1)
     way = np.array([cos(radians(degrees)), sin(radians(degrees))])
     force, bristles = (curve(LAW, speed) + LAW.viscous * speed) * WEIGHT, curve(LAW, speed) / LAW.stiffness
@@ -127,10 +127,10 @@ def by_equations(start, width: float, times, law=SOFT):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_a_rider_on_an_ellipse_moves_by_its_equations(scheme):
-    """1e-3 at the default step of 0.5 ms, and of second order: speed and direction vary, bristles come after them."""
+    """1e-3 at the default step of 0.5 ms, and of second order: speed and direction vary, and bristles follow them."""
     width, period = 0.6 * RADIUS, 2.0 * pi / TURNING
     before = np.array([RADIUS, 0.0, 0.0, TURNING * width, 0.0, 0.0])
-    # Some rounds later it is near its steady motion.
+    # After some rounds it is near its steady motion.
     start = by_equations(before, width, [5.0 * period])[-1]
     words = {"scheme": scheme, "sample_rate": 2e3, "probes": []}
 
@@ -159,7 +159,7 @@ def steady_circle(law=SOFT) -> tuple[complex, complex]:
 
 
 def test_bristles_lag_behind_a_slip_in_a_circle():
-    """By ``tan(lag) = turning g / stiffness |v|``; friction comes between the two."""
+    """By ``tan(lag) = turning g / stiffness |v|``; friction lies between the two."""
     place, z = steady_circle()
     start = [part for one in (place, 1j * TURNING * place, z) for part in (one.real, one.imag)]
     step = 5e-5
@@ -169,7 +169,7 @@ def test_bristles_lag_behind_a_slip_in_a_circle():
     )
     speed = TURNING * abs(place)
     np.testing.assert_allclose(np.abs(slip), speed, rtol=2e-4)
-    # Both are of the middle of a step, forces of its beginning.
+    # Both belong to the middle of a step, forces to its beginning.
     lag = atan(TURNING * curve(SOFT, speed) / (SOFT.stiffness * speed))
     np.testing.assert_allclose(np.angle(slip / bristles), lag, rtol=5e-4)
     ratio = (SOFT.stiffness + 1j * TURNING * SOFT.damping) * z + SOFT.viscous * 1j * TURNING * place
@@ -197,7 +197,7 @@ def test_motion_across_the_slip_has_the_roots_of_its_cubic(degrees):
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_motion_across_the_slip_decays_so_in_time(scheme):
+def test_motion_across_the_slip_decays_in_time_as_in_theory(scheme):
     """From the equilibrium with the mode across on top, its bristles too."""
     speed, step = 0.03, 2e-5
     system = sprung(40.0, speed)
@@ -240,7 +240,7 @@ def test_growth_in_time_is_that_of_linear_theory(scheme):
 # Records, restart, runs side by side, surfaces.
 
 
-def test_a_run_goes_on_with_both_bristles_and_runs_again(tmp_path):
+def test_a_run_continues_with_both_bristles_and_runs_again(tmp_path):
     system = standing(replace(LAW, initial_state=(1e-6, -2e-6)))
     names = ("normal_force", "tangential_force", "friction_state")
     whole, *_, again = goes_on(system, 2e-3, names, tmp_path, step=4e-6, sample_rate=5e4, probes=[])
@@ -278,7 +278,7 @@ def test_runs_side_by_side_are_those_alone():
 
 @pytest.mark.parametrize("law", [LAW, st.Coulomb(curve(LAW, 0.2) + LAW.viscous * 0.2)], ids=lambda law: law.law)
 def test_a_face_slides_steadily_on_bristles(law):
-    """As under the friction that they have at that speed."""
+    """As under constant friction equal to theirs at that speed."""
     material = st.Material(2e9, 2000.0, 0.3)
     pad = st.SolidBody.block(
         (0.04, 0.01, 0.03), (2, 1, 2), material, fixed=["top"], contact_faces=["bottom"], cutoff=2e4, damping=0.05

@@ -1,4 +1,4 @@
-"""Every planar verification case, turned into space, gives what it gives in the plane."""
+"""Every planar verification case, turned into space, has the same result as in the plane."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from stridula.verification.cases import CASES
 from .into_space import IntoSpace
 
 BY_NAME = {case.name: case for case in CASES}
-# Ten rotations of what takes less than a quarter of a second, two of the others.
+# Ten rotations of cases that take less than a quarter of a second, two of the others.
 QUICK = [
     "sdnd100",
     "relay",
@@ -44,7 +44,7 @@ SLOW = [
     "bowed-string",
 ]
 TURNS = [(name, seed) for names, count in ((QUICK, 10), (SLOW, 2)) for name in names for seed in range(count)]
-# Cases without a motion: the modes of a body, which any plane keeps; and what no system of bodies in contact is.
+# Cases without a motion: modes of a body, which do not depend on the plane; and cases without bodies in contact.
 MODES = [
     "frequencies-beams",
     "frequencies-modal",
@@ -60,11 +60,11 @@ SIGNALS = ["loudness-tone"]
 # Shares of the tolerance by which rows may differ beyond round-off: 1e-9 of what is compared.
 CLOSE = 1e-4
 LOOSE = {
-    # It lets go at the very end of a step, or one later: a step is a twentieth of the tolerance.
+    # It slips at the end of a step, or one later: a step is a twentieth of the tolerance.
     "belt": 0.1,
     # A kick of 1e-7 m on 1 m, whose exponents are taken from differences: round-off of 1 m over them.
     "falling-friction": 0.03,
-    # Its smallest error is 1.5e-13, of which rounding is a share.
+    # Its smallest error is 1.5e-13, partly rounding.
     "order-sliding": 0.2,
     # Rows of free damped motion are their own round-off.
     "order-time": 1e-2,
@@ -76,7 +76,7 @@ LOOSE = {
 
 
 def ask_in_space(patched: ExitStack, space: IntoSpace) -> None:
-    """Let the modules of the cases run their systems turned into space."""
+    """Make the modules of the cases run their systems turned into space."""
     for name in [name for name in sys.modules if name.startswith("stridula.verification.")]:
         for asked in ("simulate", "sliding_stability"):
             if hasattr(sys.modules[name], asked):
@@ -84,7 +84,7 @@ def ask_in_space(patched: ExitStack, space: IntoSpace) -> None:
 
 
 def rows_in_space(name: str, rotation: np.ndarray):
-    """Return the rows of a case turned into space, and what turned it."""
+    """Return the rows of a case turned into space, and the converter."""
     space = IntoSpace(rotation)
     with ExitStack() as patched:
         ask_in_space(patched, space)
@@ -104,12 +104,12 @@ def share(name: str, row) -> float:
 
 
 def words(rows) -> list[tuple[str, str]]:
-    """Return what rows are of; some say a growth of zero, whose sign rounding makes."""
+    """Return the quantities of rows; some state a growth of zero, whose sign depends on rounding."""
     return [(row.quantity.replace("growth -0 ", "growth 0 "), row.scheme) for row in rows]
 
 
 @pytest.mark.parametrize(("name", "seed"), TURNS)
-def test_a_case_gives_in_space_what_it_gives_in_the_plane(name, seed):
+def test_a_case_has_the_same_result_in_space_as_in_the_plane(name, seed):
     """Under ten random rotations of the world, under two where a case takes longer; others for each case."""
     number = 100 * list(BY_NAME).index(name) + seed
     rows, space = rows_in_space(name, Rotation.random(random_state=number).as_matrix())
@@ -134,7 +134,7 @@ def test_every_case_is_turned_or_named():
 
 
 @pytest.mark.parametrize("name", [*MODES, *SIGNALS])
-def test_in_what_is_not_turned_nothing_moves(name):
+def test_cases_that_are_not_turned_have_no_motion(name):
     if name in SIGNALS:
         assert not hasattr(sys.modules[BY_NAME[name].run.__module__], "simulate")
         return
@@ -151,7 +151,7 @@ BODIES = [
 
 
 @pytest.mark.parametrize(("body", "place"), BODIES, ids=lambda one: type(one).__name__)
-def test_modes_are_those_of_the_plane_in_any_other(body, place):
+def test_modes_are_the_same_in_any_plane(body, place):
     turn = Rotation.random(random_state=3).as_matrix()
     placed = st.ModalBody.placed(body, {"here": place}, turn[:, 0], turn[:, 1])
     np.testing.assert_array_equal(placed.modes().frequency, body.modes().frequency)
@@ -161,7 +161,7 @@ def test_modes_are_those_of_the_plane_in_any_other(body, place):
 
 
 def test_a_system_turned_the_wrong_way_falls_short(monkeypatch):
-    """Negative control: gravity and pushes stay where they were."""
+    """Negative control: gravity and forces are not turned."""
     monkeypatch.setattr(IntoSpace, "_along", lambda self, given: dict(zip("xyz", (*given, 0.0), strict=False)))
     rows, _ = rows_in_space("sdnd100", Rotation.from_euler("z", 10.0, degrees=True).as_matrix())
     assert not all(row.holds for row in rows)

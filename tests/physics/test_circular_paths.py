@@ -64,7 +64,7 @@ def fixed(turning: float = 0.0, **words):
 
 
 def carried_past(velocity: float):
-    """The same disc under a rider at rest, its waves carried past with the material: none of Coriolis' forces."""
+    """The same disc under a rider at rest, its waves carried past with the material, without Coriolis forces."""
     plate = disc(1.0)
     modes, point = plate.modes(), plate.at(HERE)
     turning = Turning(-velocity / RADIUS, modes.turning.pairs, modes.turning.order, modes.turning.order)
@@ -92,7 +92,7 @@ def forces(run) -> np.ndarray:
     "tracks", [(on_a_circle, fixed, 30.0), (on_a_circle_at, carried_past, 55.0)], ids=["held", "moved"]
 )
 def test_without_travel_of_its_own_a_circle_is_a_fixed_point(tracks, scheme):
-    """The two differ in proportion to the travel of the tip, which friction makes: of first order."""
+    """The two differ in proportion to the travel of the tip due to friction: of first order."""
     apart, travels = [], []
     circle, point, speed = tracks
     for friction in (4e-3, 2e-3, 1e-3):
@@ -110,7 +110,7 @@ def test_without_travel_of_its_own_a_circle_is_a_fixed_point(tracks, scheme):
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_a_rider_that_goes_round_is_one_that_stands_on_a_disc_that_turns(scheme):
+def test_a_rider_moving_round_equals_one_standing_on_a_turning_disc(scheme):
     """Three times round: nothing ends the run, and forces are those of the disc that turns the other way."""
     velocity, duration = 55.0, 0.05
     tracks = on_a_circle(velocity=velocity), carried_past(velocity)
@@ -122,14 +122,14 @@ def test_a_rider_that_goes_round_is_one_that_stands_on_a_disc_that_turns(scheme)
     seen, known = (forces(run)[:, 0] for run in runs)
     np.testing.assert_allclose(seen, known, atol=1e-9 * known.max())
     assert np.ptp(known) > 0.2 * known.mean()
-    # What the slope of the waves takes from the arm is what the disc that turns gives.
+    # The work of the slope of the waves on the arm is that of the turning disc.
     given = [float((run.drive_work + run.convection_work)[-1]) for run in runs]
     assert given[0] == pytest.approx(given[1], rel=1e-6)
     assert abs(float(runs[0].convection_work[-1])) > 0.02 * given[1]
 
 
-def test_what_sticks_is_carried_round_with_the_disc():
-    """A mass that nothing holds is brought to the speed of the disc, and stays where it is on it, for two turns."""
+def test_a_sticking_mass_is_carried_round_with_the_disc():
+    """A free mass reaches the speed of the disc and stays at its place on it for two turns."""
     turning, friction, mass = 20.0, 1.0, 0.02
     system = riders(on_a_circle(turning), friction=friction, stiffness=0.0, mass=mass)
     run = st.simulate(system, 0.7, step=4e-6, sample_rate=1e4, probes=[])
@@ -140,7 +140,7 @@ def test_what_sticks_is_carried_round_with_the_disc():
     assert run.time.values[held] == pytest.approx(speed * mass / (friction * 50.0), abs=2e-4)
     assert place[-1, 0] > 2.0 * disc().circle(HERE).length
     passed = place[held:, 0] - place[held, 0] - speed * (run.time.values[held:] - run.time.values[held])
-    # But for what the disc itself swings, and no more at the end.
+    # Up to the vibration of the disc itself, and no more at the end.
     assert np.abs(passed).max() < 1e-6
     assert np.abs(passed[-100:]).max() < 2.0 * np.abs(passed[:100]).max()
 
@@ -187,7 +187,7 @@ class PlainMarch:
         return found
 
 
-def test_the_march_is_a_plain_one():
+def test_the_march_equals_a_plain_one():
     """A rider on soft springs, carried round at 60 m/s: a sixth of a turn, and as far as its springs let it."""
     step, count, velocity = 4e-6, 600, 60.0
     plate = disc(cutoff=2500.0)
@@ -219,7 +219,7 @@ CASES = {
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("case", CASES)
-def test_energy_is_kept_and_laws_hold_in_every_step(case, scheme):
+def test_energy_is_conserved_and_laws_hold_in_every_step(case, scheme):
     track, abscissas = CASES[case]
     friction = st.Stribeck(0.4, 0.3, 0.5)
     system = riders(track, friction=friction, stiffness=2e4, abscissas=abscissas, mass=0.05)
@@ -238,8 +238,8 @@ def test_energy_is_kept_and_laws_hold_in_every_step(case, scheme):
     assert np.abs(travelled).max() > 1e-4
 
 
-def test_what_is_lost_in_impacts_is_small_where_nothing_lifts_off():
-    """The work of the contact is that of the slope of the waves less that of friction, to the order of the scheme."""
+def test_impact_losses_are_small_without_lift_off():
+    """The work of the contact is that of the slope of the waves minus that of friction, to the order of the scheme."""
     lost = []
     for step in (4e-6, 2e-6):
         run = st.simulate(
@@ -256,8 +256,8 @@ def test_what_is_lost_in_impacts_is_small_where_nothing_lifts_off():
     assert lost[0] / lost[1] == pytest.approx(2.0, rel=0.01)
 
 
-def test_several_contacts_on_a_circle_are_one_body_round():
-    """As a whole they may be anywhere on it: turned on by any angle nothing changes."""
+def test_several_contacts_on_a_circle_may_be_turned_by_any_angle():
+    """Turning all of them by any angle changes nothing."""
     abscissas = np.array(THREE)
     runs = [
         st.simulate(riders(on_a_circle(velocity=30.0), stiffness=2e4, abscissas=abscissas + by), 4e-3, **WORDS)
@@ -265,13 +265,13 @@ def test_several_contacts_on_a_circle_are_one_body_round():
     ]
     found = [forces(run) for run in runs]
     np.testing.assert_allclose(*found, atol=1e-7 * found[0].max())
-    # Neighbours matter.
+    # Neighbours have an influence.
     alone = forces(st.simulate(riders(on_a_circle(velocity=30.0), stiffness=2e4), 4e-3, **WORDS))
     assert np.abs(alone[:, 0] - found[0][:, 0]).max() > 0.01 * found[0].max()
 
 
-def test_a_contact_that_stays_sees_what_moves_round():
-    """A pad at a point of the disc and a rider on a circle: the same as where both stay, without travel."""
+def test_a_fixed_contact_beside_one_that_moves_round():
+    """A pad at a point of the disc and a rider on a circle: without travel the same as two fixed contacts."""
     plate, circle = disc(30.0), disc(30.0).circle(HERE)
     there = plate.at(circle.point_at(0.1).position)
 
@@ -286,7 +286,7 @@ def test_a_contact_that_stays_sees_what_moves_round():
     np.testing.assert_allclose(found, known, atol=1e-9 * known.max())
 
 
-# Side by side, going on, coupled modes.
+# Side by side, continuation, coupled modes.
 
 
 def test_runs_side_by_side_are_those_alone():
@@ -296,7 +296,7 @@ def test_runs_side_by_side_are_those_alone():
 
 
 @pytest.mark.parametrize("turning", [0.0, 40.0])
-def test_a_run_goes_on_to_the_last_bit_and_runs_again(turning, tmp_path):
+def test_a_run_continues_to_the_last_bit_and_runs_again(turning, tmp_path):
     track = on_a_circle(turning, velocity=20.0, history=st.Ramp(5e-4))
     system = riders(track, friction=0.4, stiffness=2e4, abscissas=(0.0, 0.1))
     words = {"step": 4e-6, "sample_rate": 5e4, "probes": [st.Velocity(system.track.at(HERE), "z")]}
@@ -361,8 +361,8 @@ def test_scenarios_have_circles(tmp_path):
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_a_disc_on_springs_is_ridden_round_too(scheme):
-    """A spring of no stiffness to speak of couples the modes of the disc, which are then marched in matrices."""
+def test_a_contact_moves_round_a_disc_on_springs(scheme):
+    """A spring of negligible stiffness couples the modes of the disc, which then march with matrices."""
     plain = riders(on_a_circle(velocity=20.0), friction=0.3, stiffness=2e4)
     disc_point = plain.track.at((0.1, 1.0, 0.0))
     soft = st.Spring(disc_point, direction="z", stiffness=1.0)
@@ -377,7 +377,7 @@ def test_a_disc_on_springs_is_ridden_round_too(scheme):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_growth_in_time_is_that_of_linear_theory(scheme):
-    """On soft springs the shift of the contact point along the bent disc has its share."""
+    """On soft springs the shift of the contact point along the bent disc has an influence."""
     system = riders(on_a_circle(30.0), friction=0.5, stiffness=2e6, mass=0.3)
     probe = st.Displacement(system.track.at(HERE), "z")
     known, seen, _ = growth(system, probe, 2e-6, 6e-3, 20, scheme, amplitude=1e-10)
@@ -399,7 +399,7 @@ def test_a_start_in_equilibrium_stays_there(scheme):
 # Sound.
 
 
-def test_a_disc_that_is_ridden_round_is_driven_again_as_it_moved():
+def test_a_disc_under_a_moving_contact_is_driven_again_as_it_moved():
     """From the forces and the places of a record, the acceleration of a point of the disc."""
     system = riders(on_a_circle(velocity=20.0), friction=0.3, stiffness=1e5)
     plate, place = system.track, (0.1, 2.0, 0.01)
@@ -413,7 +413,7 @@ def test_a_disc_that_is_ridden_round_is_driven_again_as_it_moved():
         return np.interp(run.time.values, moved.first + moved.interval * np.arange(found.size), found)
 
     assert np.abs(again(run) - known)[late].max() < 0.05 * np.abs(known[late]).max()
-    # Forces that stay where they began would move it otherwise.
+    # Forces at fixed places would move it differently.
     stays = run.assign(contact_position=0.0 * run.contact_position)
     assert np.abs(again(stays) - known)[late].max() > 0.2 * np.abs(known[late]).max()
 
@@ -460,7 +460,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("case", BAD)
-def test_what_does_not_fit_is_refused(case):
+def test_bad_arguments_are_refused(case):
     make, words = BAD[case]
     with pytest.raises(st.ArgumentError, match=words):
         make()

@@ -52,7 +52,7 @@ def test_two_masses_swing_in_their_normal_modes(shape, stiffness, step):
 
 
 @BOTH
-def test_a_wrong_spring_shows(scheme):
+def test_a_wrong_spring_is_detected(scheme):
     """Negative control: the middle spring left out, and central differences at a long step."""
     shape, step = np.array([1.0, -1.0]), 2e-3
     angular = np.sqrt((K + 2 * BETWEEN) / 0.4)
@@ -68,7 +68,7 @@ def test_a_wrong_spring_shows(scheme):
 @pytest.mark.parametrize("step", [1e-4, 3e-3])
 @pytest.mark.parametrize("coefficient", [0.5, 40.0])
 def test_a_dashpot_between_free_masses_stops_what_is_between_them(coefficient, step):
-    """Their middle goes on, their distance grows by v m / 2c (1 - exp(-2 c t / m)): exact, overdamped as it is."""
+    """Their middle moves on, their distance grows by v m / 2c (1 - exp(-2 c t / m)): exact, overdamped as it is."""
     system = row(st.Dashpot(ONE.centre, TWO.centre, coefficient=coefficient), v=(0.3, 0.1))
     run, moved = along_x(system, 0.6, st.ExactModal(), step)
     time, rate = run.time.values, 2 * coefficient / 0.4
@@ -149,11 +149,11 @@ def test_general_damping_is_exact_at_any_step(damping, fraction):
     peak = np.abs(expm(state * step) @ start.ravel())[:6].max()
     np.testing.assert_allclose(shapes @ run.state_modal.values[0], expected, atol=1e-9 * peak)
     assert np.abs(run.ledger_residual.values).max() < 1e-11 * run.attrs["initial_energy"]
-    # Over a single step the exact scheme's share of damping has no sign; it has none below zero in all.
+    # Over a single step the damping loss of the exact scheme may have any sign; in total it is not negative.
     assert run.damping_loss.values.min() >= 0.0
 
 
-def test_damping_of_central_differences_never_gives():
+def test_damping_of_central_differences_never_adds_energy():
     """Step by step, at any damping."""
     for damping in (1.0, 60.0, 800.0):
         body, _, start = damped_block(damping)

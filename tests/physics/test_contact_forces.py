@@ -1,6 +1,6 @@
 """Contact forces move bodies as loads do; contact, stick and reversals are timed to second order.
 
-Default steps wherever nothing else is said.
+With default steps unless stated otherwise.
 """
 
 from __future__ import annotations
@@ -97,8 +97,8 @@ def test_reversals_are_of_second_order(frequency, friction, scheme):
     assert abs(swing(frequency, friction, 401.7, scheme) / expected - 1.0) < 1e-4
 
 
-def test_what_slid_before_decides_on_a_reversal():
-    """Negative control: the same push on a contact that was open takes the friction of one sense for the whole step."""
+def test_the_previous_slip_decides_on_a_reversal():
+    """Negative control: the same push on a contact that was open has friction of one sense for the whole step."""
     w, numbers = (1e-4, 0.0, 0.0, 1e-4), np.array([[0.3] + [0.0] * 7])
     forces = []
     for status in (SLIDING, SEPARATED):
@@ -113,7 +113,7 @@ def test_what_slid_before_decides_on_a_reversal():
 
 @BOTH
 def test_time_in_contact_is_of_second_order(scheme):
-    """A mass on a floor shaken by 1.2 g: it leaves where the floor falls faster than it, and lands after a parabola.
+    """A mass on a floor shaken by 1.2 g: it leaves when the floor falls faster, and lands after a parabola.
 
     Whole steps, which `status` counts, are a step too many each time.
     """
@@ -162,7 +162,7 @@ def test_time_in_stick_ends_where_the_force_leaves_the_cone(scheme):
 def test_stiff_friction_damps_a_sawtooth(scheme):
     """Steady sliding at 1 um/s, the mass a tenth of that too fast: ``h dF/dv`` is fifty times the mass.
 
-    What rings from step to step falls by a third of itself in each, `n / 3^n` for a double root; the mean of two slips
+    Oscillations from step to step fall by a third in each, `n / 3^n` for a double root; the mean of two slips
     never sees it.
     """
     law = st.RateAndState(0.6, 0.005, 0.01, 1e-5, 1e-6)
@@ -227,8 +227,8 @@ def test_bristles_start_where_they_are_told():
     assert moved(law) > 0.1
 
 
-def test_kernels_of_the_contact_do_not_inherit_leave_to_reassociate():
-    """numba hands fast arithmetic of a caller on to functions that say nothing of it."""
+def test_kernels_of_the_contact_do_not_inherit_fast_arithmetic():
+    """numba passes the fast arithmetic of a caller on to functions that do not set it."""
     functions = [
         value
         for module in (bookkeeping, contact, contacts, direct, faces, friction, solves)

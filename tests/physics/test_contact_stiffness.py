@@ -1,4 +1,4 @@
-"""Contacts that yield: against Hertz, Hoffmann's mass, closed forms of a spring, and linear theory."""
+"""Compliant contacts: against Hertz, Hoffmann's mass, closed forms of a spring, and linear theory."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def thrown(stiffness, speed: float = 0.01, mass: float = BALL) -> st.System:
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("stiffness", KINDS, ids=str)
 def test_a_ball_bounces_back_as_fast_as_it_came(stiffness, scheme):
-    """What is stored is given back to the last digit, in whatever steps."""
+    """The stored energy is returned to the last digit, for any step."""
     system = thrown(stiffness)
     for step in (2e-6, 2e-5):
         probes = [st.Velocity(system.slider.centre, "y")]
@@ -57,7 +57,7 @@ def test_hertz_on_a_wall():
     assert np.ptp(time[force > 0.0]) == pytest.approx(2.943275 * deepest / speed, rel=5e-3)
 
 
-def test_damping_takes_what_it_says():
+def test_damping_follows_its_coefficient():
     """A mass on a contact's spring and dashpot, pressed so that it never opens: the oscillator in closed form."""
     stiffness, damping, mass, push = 1e6, 20.0, 0.1, 100.0
     body = st.RigidBody(mass)
@@ -136,7 +136,7 @@ def test_several_contacts_obey_their_laws_at_every_step(scheme):
         if contact.yields is None:
             assert np.abs(gap[:, k] * normal[:, k]).max() < 1e-9 * size * np.abs(gap).max()
             continue
-        # Where the indentation hardly changes in two steps the force is that at its mean.
+        # If the indentation hardly changes in two steps, the force is that at its mean.
         *_, damping, rate = contact.yields.numbers
         indented = np.maximum(-gap[:, k], 0.0)
         mean, change = 0.5 * (indented[2:] + indented[:-2]), (indented[2:] - indented[:-2]) / (2.0 * step)
@@ -155,7 +155,7 @@ def test_runs_side_by_side_are_those_alone():
     same_side_by_side(systems, 2e-3, step=4e-6, sample_rate=5e4, probes=[])
 
 
-def test_a_run_goes_on_to_the_last_bit_and_runs_again(tmp_path):
+def test_a_run_continues_to_the_last_bit_and_runs_again(tmp_path):
     system = on_layers(st.PowerStiffness(1e12, 1.5, 0.05))
     names = ("normal_force", "tangential_force", "kinetic_and_elastic")
     whole, *_, again = goes_on(system, 2e-3, names, tmp_path, step=4e-6, sample_rate=5e4, probes=[])
@@ -163,7 +163,7 @@ def test_a_run_goes_on_to_the_last_bit_and_runs_again(tmp_path):
 
 
 def test_a_stiff_contact_is_a_rigid_one():
-    """As it stiffens equilibrium and modes come close to those of rigid ones."""
+    """With growing stiffness, equilibrium and modes approach those of rigid contacts."""
     rigid = dragged(0.4, 0.01)
     known, apart = st.sliding_stability(rigid), []
 
@@ -201,7 +201,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_what_does_not_fit_is_said(name):
+def test_bad_arguments_are_refused(name):
     make, words = BAD[name]
     with pytest.raises(ValueError, match=words):
         make()

@@ -1,4 +1,4 @@
-"""Systems at the edge of what the equations admit, each with an answer that is known."""
+"""Systems at the limits of the equations, each with a known answer."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_a_tip_that_moves_along_the_normal_only(law):
 def test_a_tip_that_cannot_move_along_the_normal_is_refused():
     body = st.ReducedBody([[1.0]], [[1e4]], {"tip": (0, None)})
     system = st.System(st.PointContact(body.at("tip"), st.RigidTrack(), name="floor"))
-    with pytest.raises(ValueError, match=r"^contact floor must be between bodies of which one moves along its normal"):
+    with pytest.raises(ValueError, match=r"^contact floor must have a tip or a track that moves along its normal"):
         st.simulate(system, 0.01)
 
 
@@ -79,7 +79,7 @@ def test_a_ledger_that_is_no_number_stops_the_run():
 
 
 def test_an_interrupt_in_the_last_chunk_is_not_lost():
-    """The run is whole; whoever pressed Ctrl-C still learns of it."""
+    """The run is complete, and the interrupt is still raised."""
 
     class Pressed(st.Constant):
         def factor(self, time):

@@ -13,7 +13,7 @@ STEEL = st.Material(2.1e11, 7800.0, 0.3)
 STRIP = st.Rectangle(0.02, 0.005)
 SAMPLES = ([0.0, 300.0, 2000.0], [0.002, 0.01, 0.05])
 
-# What each form says of the ratio of a mode of frequency f [Hz].
+# Damping ratio of a mode of frequency f [Hz] under each form.
 FORMS = {
     "ratio": (0.013, lambda f: 0.013 + 0.0 * f),
     "rayleigh": (st.Rayleigh(30.0, 2e-6), lambda f: 30.0 / (4 * np.pi * f) + 2e-6 * np.pi * f),
@@ -55,12 +55,12 @@ def test_modes_have_the_ratio_of_their_frequency(body, form):
     np.testing.assert_allclose(modes.damping[elastic], ratio(f), rtol=1e-12)
     np.testing.assert_allclose(modes.damping_rate[elastic], 4 * np.pi * f * ratio(f), rtol=1e-12)
     assert modes.damping_matrix is None
-    # No force is needed to translate or to turn a beam, but a share of mass brakes it.
+    # No force is needed to translate or to turn a beam, but mass-proportional damping brakes it.
     np.testing.assert_allclose(modes.damping_rate[~elastic], 30.0 if form == "rayleigh" else 0.0, rtol=1e-12)
 
 
 def decayed(w, rate, t):
-    """Displacement and velocity after t of a mode let go at 1 with no velocity, whatever its damping."""
+    """Displacement and velocity after t of a mode released at 1 with no velocity, for any damping."""
     roots = np.roots([1.0, rate, w**2]).astype(complex)
     if abs(roots[0] - roots[1]) < 1e-6 * w:
         return np.exp(-w * t) * (1 + w * t), -np.exp(-w * t) * w**2 * t
@@ -77,7 +77,7 @@ def far(body):
 
 
 def oscillator(ratio, w=300.0, mass=0.2):
-    """A mass on two springs whose damping law gives the ratio, one and above by a law only."""
+    """A mass on two springs with a damping ratio from a law; one and above by a law only."""
     damping = st.RisingDamping(0.0, ratio / (w / (2 * np.pi)))
     return st.ReducedBody(mass * np.eye(2), mass * w**2 * np.eye(2), {"tip": (0, 1)}, damping=damping)
 
@@ -103,7 +103,7 @@ def test_a_mode_decays_as_the_closed_form(ratio, scheme):
 
 
 @pytest.mark.parametrize("wrong", [1.01, 0.99])
-def test_a_ratio_off_by_a_percent_is_seen(wrong):
+def test_a_ratio_off_by_a_percent_is_detected(wrong):
     body = oscillator(1.3)
     system = st.System(
         far(oscillator(1.3 * wrong)), [st.InitialState(oscillator(1.3 * wrong), displacement=[0.0, 1e-3])]
@@ -113,8 +113,8 @@ def test_a_ratio_off_by_a_percent_is_seen(wrong):
     assert np.abs(run["displacement"].values[:, 0] / 1e-3 - position).max() > 1e-4
 
 
-def test_a_share_of_mass_brakes_free_flight():
-    """v = v0 exp(-alpha t) for a body that nothing holds."""
+def test_mass_proportional_damping_brakes_free_flight():
+    """v = v0 exp(-alpha t) for a free body."""
     body = st.ReducedBody(0.2 * np.eye(2), np.zeros((2, 2)), {"tip": (0, 1)}, damping=st.Rayleigh(40.0, 0.0))
     system = st.System(far(body), [st.InitialState(body, velocity=[0.7, 0.0])])
     run = st.simulate(system, 0.1, step=1e-4, probes=[st.Displacement(body.at("tip"), "x")])
@@ -125,7 +125,7 @@ def test_a_share_of_mass_brakes_free_flight():
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("scheme", [st.ExactModal(), st.CentralDifference()], ids=lambda s: s.name)
 def test_energy_lost_a_cycle_of_a_forced_mode(form, scheme):
-    """In the steady state damping takes ``pi d w X²`` a cycle from each mode of amplitude X, and the ledger says so."""
+    """In the steady state damping takes ``pi d w X²`` a cycle from each mode of amplitude X, as does the ledger."""
     damping, ratio = FORMS[form]
     track = st.ModalBeam(STEEL, STRIP, 0.8, bending_modes=1, axial_modes=0, damping=damping)
     own = track.modes().angular_frequency[0]

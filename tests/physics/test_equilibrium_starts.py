@@ -1,4 +1,4 @@
-"""Starts in sliding equilibrium stay there; with a mode on top they go as linear theory says."""
+"""Starts in sliding equilibrium stay there; with a mode on top they follow linear theory."""
 
 from __future__ import annotations
 
@@ -59,15 +59,15 @@ def test_a_law_that_depends_on_speed_stays_there_where_its_force_turns_the_norma
 
 @pytest.mark.parametrize("name", STEADY)
 def test_a_start_without_deflection_does_not_stay(name):
-    """Negative control: the same systems from where they are undeformed."""
+    """Negative control: the same systems from their undeformed state."""
     run = st.simulate(STEADY[name](), 0.02, scheme=EXPLICIT, probes=[])
     moved = max(change(run.normal_force), change(run.tangential_force), change(run.slip_velocity))
     assert moved > 1e-4
 
 
 @pytest.mark.parametrize("name", TRAVELLING)
-def test_what_a_contact_travels_along_bends_steadily_with_it(name, monkeypatch):
-    """Nothing is exactly steady there; a start that leaves the travel out is the worse of two."""
+def test_the_deflection_travels_steadily_with_the_contact(name, monkeypatch):
+    """Nothing is exactly steady there; a start without the travel is worse."""
     system = TRAVELLING[name]()
     run = st.simulate(starting(system), 0.02, scheme=EXPLICIT, probes=[])
     kept = change(run.normal_force)
@@ -84,7 +84,7 @@ def test_what_a_contact_travels_along_bends_steadily_with_it(name, monkeypatch):
 
 
 def growth(system: st.System, probe, step: float, duration: float, every: int, scheme=EXPLICIT, **words):
-    """Exponent of the most unstable mode, and the one seen in how far it takes a run from its equilibrium."""
+    """Exponent of the most unstable mode, and that of the departure of a run from its equilibrium."""
     theory = st.sliding_stability(system, time=0.0)
     values = theory.growth_rate.values + 2j * pi * theory.frequency.values
     known = values[np.where(values.imag > 0.0, values.real, -np.inf).argmax()]
@@ -137,7 +137,7 @@ def test_a_mode_on_top_grows_as_linear_theory_says(make):
     assert known.real > 0.0
     assert seen.real == pytest.approx(known.real, rel=2e-3)
     assert seen.imag == pytest.approx(known.imag, rel=2e-3)
-    # It is the mode alone: envelope and phase from the first step on, not after others have died out.
+    # The mode alone: envelope and phase from the first step on, without a decay of others.
     time = step * (1.0 + np.arange(len(away)))
     waves = np.exp(known * time)
     fitted, *_ = np.linalg.lstsq(np.stack([waves.real, waves.imag], axis=1), away[:, 0], rcond=None)
@@ -145,8 +145,8 @@ def test_a_mode_on_top_grows_as_linear_theory_says(make):
     assert np.abs(left / np.abs(waves)).max() < 0.02 * np.hypot(*fitted)
 
 
-def test_the_fit_tells_another_exponent_apart():
-    """Negative control: with no friction in it the mode that is put on top is another one, and does not stay one."""
+def test_the_fit_distinguishes_another_exponent():
+    """Negative control: a mode computed without friction is a different one, and does not persist."""
     system, probe, step, duration, every, amplitude = hoffmann()
     known, _, away = growth(system, probe, step, duration, every, amplitude=amplitude)
     waves = np.exp((known - 0.01) * step * (1.0 + np.arange(len(away))))
@@ -190,7 +190,7 @@ def test_theory_says_where_the_contact_points_are_in_equilibrium(name):
 
 
 def test_an_initial_state_taken_from_theory_is_accepted():
-    """What rounding leaves of a gap in a solve and in the turn to physical displacements is no overlap."""
+    """Rounding of a gap, in the solve and in physical displacements, is not an overlap."""
     refused = 0
     for seed in range(40):
         random = np.random.default_rng(seed)
@@ -272,7 +272,7 @@ def test_a_scenario_that_starts_in_equilibrium_can_be_swept(tmp_path):
     np.testing.assert_allclose(two, 2.0 * one, rtol=0.05)
 
 
-def test_a_run_goes_on_from_a_start_in_equilibrium():
+def test_a_run_continues_from_a_start_in_equilibrium():
     system = starting(dragged(bar().at(0.17)))
     whole = st.simulate(system, 2e-3, scheme=EXPLICIT, probes=[])
     half = st.simulate(system, 1e-3, scheme=EXPLICIT, probes=[])
@@ -349,7 +349,7 @@ def jammed() -> st.System:
         (jammed, {"status": "sliding"}, "contact 1 is jammed"),
         (mass_on_a_belt, {"velocity": 0.1}, "velocity must be left out: drives and tracks prescribe the slip"),
         (mass_on_a_belt, {"mode": 5, "amplitude": 1e-6}, "mode must be below 1, the number of modes, got 5"),
-        (mass_on_a_belt, {"status": ["sliding", "sliding"]}, "status must hold one for each contact, 1 in all"),
+        (mass_on_a_belt, {"status": ["sliding", "sliding"]}, "status must have one value for each contact, 1 in all"),
         (
             lambda: dragged(st.RigidTrack(), velocity=0.0),
             {"velocity": 0.1},
@@ -365,7 +365,7 @@ def jammed() -> st.System:
         ),
     ],
 )
-def test_a_start_that_is_not_there_is_refused_in_one_line(make, words, message):
+def test_a_start_without_equilibrium_is_refused_in_one_line(make, words, message):
     with pytest.raises(ValueError, match=message) as caught:
         st.simulate(starting(make(), **words), 1e-3)
     assert "\n" not in str(caught.value)

@@ -46,7 +46,7 @@ def test_steady_sliding_is_on_the_curve_of_the_law(law, belt, scheme):
     assert float(last.normal_force) == pytest.approx(LOAD, rel=1e-12)
 
 
-def test_steady_sliding_tells_the_laws_apart():
+def test_steady_sliding_distinguishes_the_laws():
     """Negative control: no two laws of the table are the same at 0.3 m/s, and the curves depend on the velocity."""
     ratios = [float(law.coefficient_at(0.3)) for law in LAWS.values() if not isinstance(law, st.StaticKinetic)]
     assert min(abs(a - b) for n, a in enumerate(ratios) for b in ratios[:n]) > 1e-3
@@ -166,7 +166,7 @@ def test_stick_slip_of_a_static_and_a_kinetic_coefficient(scheme):
     amplitude = np.hypot(0.2 * LOAD / STIFFNESS, belt / angular)
     late = slice(x.size // 2, None)
     assert {1, 2} == set(status[late])
-    # A step's travel is what a break can be missed by.
+    # A break may be late by the travel of one step.
     assert x[late].max() == pytest.approx(middle + amplitude, rel=1e-3)
     assert x[late].min() == pytest.approx(middle - amplitude, rel=3e-3)
     breaks = np.flatnonzero((status[:-1] == 1) & (status[1:] == 2))

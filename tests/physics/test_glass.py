@@ -1,4 +1,4 @@
-"""A wine glass that sings: its modes, the onset of friction's feed, growth, limit cycle, and what is carried round."""
+"""A wine glass that sings: its modes, onset, growth, limit cycle, and waves carried round."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def glass(**changes: Any) -> st.System:
 
 
 def fundamental(body: st.AxisymmetricBody, order: int = 2) -> tuple[float, np.ndarray]:
-    """Frequency of the first pair of an order, and how its modes move the rim at the angle 0, shape (3, 2)."""
+    """Frequency of the first pair of an order, and displacements of the rim at the angle 0, shape (3, 2)."""
     pair = [int(np.flatnonzero((body.numbers == (order, 0, side)).all(axis=1))[0]) for side in (0, 1)]
     return float(body.modes().frequency[pair[0]]), body.trace((RIM, 0.0, HEIGHT))[:, pair]
 
@@ -34,7 +34,7 @@ def growing(system: st.System) -> tuple[float, float]:
 
 
 def test_its_modes_bend_the_rim_without_stretching_it():
-    """Rayleigh: ``u_r + du_theta / dtheta = 0``, so the rim moves along itself by 1 / n of how it moves across."""
+    """Rayleigh: ``u_r + du_theta / dtheta = 0``, so its tangential motion is 1 / n of the radial one."""
     body = glass().track
     for order in (2, 3, 4):
         frequency, rows = fundamental(body, order)
@@ -75,13 +75,13 @@ def test_it_sings_from_where_the_feed_beats_damping():
         early, late = (size[part].max() for part in (slice(8000, 12000), slice(-4000, None)))
         assert np.log(late / early) / 1.4 == pytest.approx(growth, rel=0.02, abs=0.01)
         assert frequency == pytest.approx(fundamental(system.track)[0], rel=1e-3)
-    # Friction that does not fall feeds nothing.
+    # Friction that does not fall adds no energy.
     steady = st.sliding_stability(glass(**{"friction.law": "coulomb", "friction.coefficient": 0.6}))
     assert not steady.unstable.any()
 
 
 def test_a_survey_of_turning_has_growth_in_time_and_modes_that_live():
-    """The feed falls with the speed; the growth of each run is that of its eigenvalue."""
+    """The energy from friction falls with the speed; the growth of each run is that of its eigenvalue."""
     found = st.squeal_survey("glass", {"turning": [3.0, 5.0, 8.0]}).isel(mode=0)
     assert (np.diff(found.growth_rate) < 0.0).all()
     np.testing.assert_allclose(found.seen_growth_rate, found.growth_rate, rtol=0.02)
@@ -91,8 +91,8 @@ def test_a_survey_of_turning_has_growth_in_time_and_modes_that_live():
     assert (np.abs(found.seen_growth_rate.values[:-1] / found.growth_rate.values[1:] - 1.0) > 0.2).all()
 
 
-def test_a_survey_tells_slow_growth_by_the_slip_along_the_rim():
-    """Where the normal force hardly swings, tones are those of the slip, in space along one of its two tangents."""
+def test_a_survey_measures_slow_growth_by_the_slip_along_the_rim():
+    """If the normal force hardly varies, tones are those of the slip, in space along one of its two tangents."""
     found = st.squeal_survey("glass", {"turning": [2.1], "drives.0.z": [-0.1]})
     assert found.message.values.tolist() == [[""]]
     assert found.verdict.values.tolist() == [["unstable"]]
@@ -109,7 +109,8 @@ def test_the_shipped_case_sticks_slips_and_sings_just_below_its_mode():
     spectrum = np.abs(np.fft.rfft(late * np.hanning(late.size), 1 << 20))
     tone = np.fft.rfftfreq(1 << 20, float(run.attrs["sample_interval"]))[spectrum.argmax()]
     assert 0.995 * frequency < tone < frequency
-    # The rim moves along itself as fast as it turns, where it sticks, and a little faster by the give of the skin.
+    # While it sticks, the tangential velocity of the rim is that of turning, slightly more due to the skin's
+    # compliance.
     speed = RIM * case.system.track.turning
     along = 0.5 * np.abs(late).max()
     assert speed < along < 2.0 * speed
@@ -160,5 +161,5 @@ def test_once_the_finger_is_lifted_waves_lag_behind_the_glass():
     assert rate == pytest.approx(drag * turning.velocity, rel=2e-3)
     # A ring has 1.2; the bowl below the rim moves across more than along.
     assert drag == pytest.approx(2.0 * 3.0 / 5.0, rel=0.05)
-    # Negative control: not with the glass, and not in space.
+    # Negative control: the waves are fixed neither to the glass nor in space.
     assert abs(rate / (2.0 * turning.velocity) - 1.0) > 0.3

@@ -49,7 +49,7 @@ def test_a_circle_of_pressure_sinks_by_twice_the_pressure_times_the_radius_over_
     np.testing.assert_allclose(sunk[[0, 2]], 0.0, atol=1e-9 * abs(sunk[1]))
 
 
-def test_it_yields_alike_whichever_way_it_faces():
+def test_the_displacement_does_not_depend_on_the_orientation():
     """Turned as a whole: a wall that faces -x with sides at 30 degrees, beside a floor."""
     floor = st.ModalBody.half_space(RUBBER, grid(3), SIDE)
     out, along = np.array([-1.0, 0.0, 0.0]), np.array([0.0, np.cos(np.pi / 6), 0.5])
@@ -63,7 +63,7 @@ def test_it_yields_alike_whichever_way_it_faces():
 
 
 def dragged(block, tips, plane):
-    """Press a bump on the squares of a plane and drag it; `tips` says by what point of the block each is met."""
+    """Press a bump on the squares of a plane and drag it; `tips` has the point of the block on each."""
     gaps = 0.02 * (grid(4) ** 2).sum(axis=1) / SIDE
     contacts = [
         st.PointContact(block.at(tips(name)), plane.at(name), friction=st.Coulomb(0.4), gap=gap, surface="face")
@@ -80,8 +80,8 @@ def rigid(mass=1e-3):
     return st.ModalBody(np.zeros(3), {"middle": np.eye(3) / np.sqrt(mass)}, 2e3, name="block")
 
 
-def test_two_like_ones_yield_as_one_of_half_the_modulus():
-    """Pressed on each other, where what one moves along itself under pressure the other one does, too."""
+def test_two_equal_half_spaces_yield_as_one_of_half_the_modulus():
+    """Pressed on each other, where both have the same tangential displacement under pressure."""
     soft = st.Material(RUBBER.young / 2, 1000.0, RUBBER.poisson)
     one = st.ModalBody.half_space(soft, grid(4), SIDE, coupled=False, name="plane")
     single = dragged(rigid(), lambda _: "middle", one)
@@ -120,7 +120,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_what_is_refused(name):
+def test_bad_arguments_are_refused(name):
     given, words = BAD[name]
     known = {"material": RUBBER, "places": grid(2), "side": SIDE} | given
     with pytest.raises(st.ArgumentError, match=words):

@@ -1,4 +1,4 @@
-"""What every run satisfies at each step, in every regime, with every drive, under both schemes."""
+"""Laws that every run satisfies at each step, in every regime, with every drive, under both schemes."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def violations(run, mu: float) -> set[str]:
     small_gap = SUM * np.abs(run.contact_height.values).max()
     small_slip = SUM * np.abs(run.contact_position.values).max()
     closed, stuck, sliding = normal > 0, status == STICKING, status == SLIDING
-    # In a step in which the slip turns round, forces are means over both senses.
+    # In a step in which the slip reverses, forces are means over both senses.
     sliding &= ~np.concatenate([[False], sliding[:-1] & (slip[1:] * slip[:-1] < 0)])
     laws = {
         "normal force below zero": normal.min() < 0,
@@ -64,7 +64,7 @@ def test_laws_hold_at_every_step(name, scheme):
 
 
 def test_the_cases_visit_all_states():
-    """Laws that nothing visits are not tested: each state must fill a tenth of some case."""
+    """Each state must fill a tenth of some case, or its laws are not tested."""
     shares = np.array([run_of(name, SCHEMES[1]).status_share.values.mean(axis=0) for name in CASES])
     assert np.all(shares.max(axis=0) > 0.1)
 
@@ -83,7 +83,7 @@ def test_the_cases_visit_all_states():
     ],
 )
 def test_harness_rejects_a_broken_law(change, law):
-    """Negative control: a record of squeal, changed by a little, breaks just the law that it should."""
+    """Negative control: a slightly changed record of squeal breaks exactly the expected law."""
     run, mu = run_of("squeal", SCHEMES[1]).copy(deep=True), 1.5
     if change == "less friction":
         mu *= 1 - 1e-12
@@ -196,7 +196,7 @@ def test_a_stick_does_not_creep(scheme):
 def test_a_stick_returns_to_its_anchor(scheme):
     """Moved off its anchor by 1 nm in the state handed on, a stuck tip is back on it after one step.
 
-    That is what keeps round-off from adding up: a stick held to the last step instead would stay where it is.
+    This prevents round-off from accumulating: a stick held at the last step would stay displaced.
     """
     system = pair(lambda rod: [st.Force(rod.root, y=-5.0, history=st.Ramp(0.05))], mu=1.2, angle=20.0, gap=0.0)
     stuck = every_step(system, 60_000, scheme)

@@ -27,7 +27,7 @@ def test_ledger_closes_over_two_seconds(name, scheme):
     run = st.simulate(CASES[name](), 2.0, scheme=scheme, step=STEP)
     assert run.attrs["ended"] == "finished"
     assert residual(run) < 1e-10
-    # The residual is that of its own definition, and the contact's work splits into its three parts.
+    # The residual follows its definition, and the contact's work is the sum of its three parts.
     balance = (
         run.kinetic_and_elastic + run.damping_loss - run.drive_work - run.contact_work - run.attrs["initial_energy"]
     )
@@ -39,7 +39,7 @@ def test_ledger_closes_over_two_seconds(name, scheme):
 
 
 def test_harness_rejects_a_march_that_leaks(monkeypatch):
-    """Negative control: one mode whose increment is off by 1e-7, once in 20 000 steps, ends the run."""
+    """Negative control: an error of 1e-7 in the increment of one mode, once in 20 000 steps, ends the run."""
     advance = March.advance
 
     def leaking(march, *arguments):

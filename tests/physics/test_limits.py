@@ -45,7 +45,7 @@ def test_quasi_static_limit(angle, along, scheme):
     """
     limit = tan(radians(angle)) if along else 1 / tan(radians(angle))
     below, acceleration = pushed(angle, 0.9 * limit, along, scheme)
-    # From rest under a ramp of 0.1 s then 0.3 s steady; half of it is left for the bounce's tax.
+    # From rest under a ramp of 0.1 s then 0.3 s steady; half of it allows for losses by bouncing.
     travel = acceleration * (0.1**2 / 6 + 0.1 / 2 * 0.3 + 0.3**2 / 2)
     moved = below.contact_position.values[-1] - below.contact_position.values[0]
     assert (-1 if along else 1) * moved > 0.5 * travel
@@ -55,7 +55,7 @@ def test_quasi_static_limit(angle, along, scheme):
     assert np.all(above.status.values[-20_000:] == STICKING)
 
 
-def test_limit_harness_tells_the_two_leans_apart():
+def test_limit_harness_distinguishes_the_two_leans():
     """Negative control: at 30 degrees and mu = 1 a trailing slider slides (cot 30 = 1.73) and a digging one holds
     (tan 30 = 0.58); with either limit in the other's place the test above would fail."""
     slides, _ = pushed(30.0, 1.0, False, SCHEMES[1])

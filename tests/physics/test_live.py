@@ -1,4 +1,4 @@
-"""A march without end: the run of `simulate` in parts, and what a change on the way keeps."""
+"""Live marches: the run of `simulate` in parts, and continuity at changes."""
 
 import numpy as np
 import pytest
@@ -58,8 +58,8 @@ def test_a_change_to_the_same_system_changes_nothing(case):
     assert np.abs(now - then)[:200].max() < 1e-6 * then.max()
 
 
-def test_a_root_goes_on_from_where_it_is_at_another_velocity():
-    """Its displacement does not jump in the eyes of a probe: 1 cm/s for 0.31 s, then 2 and 0.5 cm/s for 0.1 s each."""
+def test_a_root_continues_in_place_at_another_velocity():
+    """Its displacement at a probe does not jump: 1 cm/s for 0.31 s, then 2 and 0.5 cm/s for 0.1 s each."""
 
     def dragged(velocity):
         what = system("weak-pressure", drives__0__velocity=velocity)
@@ -86,7 +86,7 @@ def test_a_root_goes_on_from_where_it_is_at_another_velocity():
         {"cutoff": "14 kHz"},
     ],
 )
-def test_motion_goes_on_where_a_small_change_finds_it(change):
+def test_motion_continues_after_a_small_change(change):
     live, before = played("weak-pressure", chunks=30)
     still, _ = played("weak-pressure", chunks=30)
     assert changed(live, "weak-pressure", **change)
@@ -127,7 +127,7 @@ def test_energy_balances_after_a_change():
     assert abs(balance) < 1e-8 * max(map(abs, energies.values()))
 
 
-def test_another_velocity_pulls_on_from_where_the_tip_is():
+def test_another_velocity_continues_from_the_place_of_the_tip():
     live, _ = played("weak-pressure", chunks=50)
     changed(live, "weak-pressure", drives__0__velocity=0.1)
     place = marched(live, 50)["contact_position"]
@@ -148,7 +148,7 @@ def test_a_plate_keeps_the_amplitude_of_each_of_its_waves():
     spans, old = live.spans["track"], live.position
     assert live.change(now, ())
     ratio = np.sqrt(0.0041 / 0.004)
-    # The contact is put back to its opening, by a displacement that is small against the waves.
+    # The contact keeps its gap, by a displacement that is small against the waves.
     kept = np.abs(live.position[slice(*spans)] - ratio * old[slice(*spans)])
     assert kept.max() < 0.05 * np.abs(old[slice(*spans)]).max()
     frequencies = [one.track.modes().angular_frequency for one in (before, now)]
@@ -171,7 +171,7 @@ def test_a_root_that_is_made_to_move_faster_does_not_take_its_body_along_at_once
         {"contact__at": 1.6},
     ],
 )
-def test_what_cannot_go_on_starts_anew(changes):
+def test_systems_that_cannot_continue_restart(changes):
     live, _ = played("stable-sliding", chunks=60)
     assert not changed(live, "stable-sliding", **changes)
     assert live.time == 0.0
@@ -180,7 +180,7 @@ def test_what_cannot_go_on_starts_anew(changes):
     assert all(np.array_equal(again[name], first[name]) for name in first)
 
 
-def test_off_the_track_it_says_so_and_starts_anew():
+def test_off_the_track_it_reports_it_and_restarts():
     what = system("stable-sliding", drives__0__transverse=40.0)
     live = LiveMarch(what, probes(what))
     for _ in range(200):
@@ -210,7 +210,7 @@ def test_a_contact_that_is_moved_far_keeps_its_opening(case):
             was_open = live._march.states[0].carried[0, at.STATUS] == 0.0
 
 
-def test_it_begins_as_another_system_whatever_became_of_it(monkeypatch):
+def test_it_restarts_as_another_system_from_any_state(monkeypatch):
     live, _ = played("squeal", chunks=5)
     monkeypatch.setattr(live._belief, "initial_energy", live._belief.initial_energy + 1.0)
     assert live.advance(480)[1] == "energy created"
@@ -224,7 +224,7 @@ def test_it_begins_as_another_system_whatever_became_of_it(monkeypatch):
     assert live.system is what
 
 
-def test_schemes_change_on_the_way():
+def test_schemes_change_during_a_run():
     live, before = played("weak-pressure", chunks=30)
     assert changed(live, "weak-pressure", st.CentralDifference())
     after = marched(live, 30)
@@ -232,7 +232,7 @@ def test_schemes_change_on_the_way():
 
 
 def test_steps_are_as_long_as_asked_for_and_the_run_bit_for_bit():
-    """A sample has a whole number of steps, none longer than asked for."""
+    """A sample has a whole number of steps, none longer than requested."""
     what = system("weak-pressure")
     live = LiveMarch(what, probes(what), step=9e-6)
     assert live.ratio == 3
@@ -262,7 +262,7 @@ def test_several_contacts_and_rigid_tracks_are_the_run_bit_for_bit(case):
 @pytest.mark.parametrize(
     ("case", "key", "value"), [("belt", "track__velocity", 0.2), ("violin", "friction__static", 0.9)]
 )
-def test_what_rubs_goes_on_where_it_is_when_it_is_turned(case, key, value):
+def test_contacts_continue_in_place_when_values_change(case, key, value):
     live, _ = LiveMarch(system(case), ()), None
     before = live.advance(4800)[0]
     assert live.change(system(case, **{key: value}), ())
@@ -280,7 +280,7 @@ def refuse(*_):
     raise ValueError("no start")
 
 
-def test_what_is_refused_changes_nothing(monkeypatch):
+def test_a_refused_change_has_no_effect(monkeypatch):
     live, _ = played("squeal", chunks=5)
     still, _ = played("squeal", chunks=5)
     with pytest.raises(ValueError, match="probe must be on a body of this system"):
@@ -293,7 +293,7 @@ def test_what_is_refused_changes_nothing(monkeypatch):
     assert all(np.array_equal(now[name], then[name]) for name in now)
 
 
-def test_energy_that_comes_from_nowhere_ends_it(monkeypatch):
+def test_created_energy_ends_it(monkeypatch):
     live, _ = played("squeal", chunks=5)
     monkeypatch.setattr(live._belief, "initial_energy", live._belief.initial_energy + 1.0)
     chunk, ended = live.advance(480)

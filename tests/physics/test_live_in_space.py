@@ -1,4 +1,4 @@
-"""A march without end in space: the run of `simulate` in parts, and what a change on the way keeps."""
+"""Live marches in space: the run of `simulate` in parts, and continuity at changes."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_parts_are_the_run_bit_for_bit(case, samples):
     assert np.array_equal(run.velocity.values[: len(late)], late)
 
 
-def test_what_bodies_do_is_told_where_springs_hold_their_residual_shapes():
+def test_motion_of_bodies_is_given_with_springs_on_residual_shapes():
     """Displacement and velocity of a pad's back: by the modes of the body, and by the rows of probes."""
     what = system("brake")
     pad = next(body for body in what.bodies if body.name == "upper pad")
@@ -69,7 +69,7 @@ def test_what_bodies_do_is_told_where_springs_hold_their_residual_shapes():
 
 
 def changed_in_both(change, samples: int = 480):
-    """March a rod along a beam in the plane and the same in space, changed on the way; return their normal forces."""
+    """March a rod along a beam in the plane and in space, with a change during the run; return their normal forces."""
     before, now = rubbed(BEAM), change(rubbed(BEAM))
     found = []
     for first, second in ((before, now), (IntoSpace(TURNED).system(before)[0], IntoSpace(TURNED).system(now)[0])):
@@ -101,7 +101,7 @@ def test_a_change_in_space_is_that_of_the_plane(change):
     np.testing.assert_allclose(in_space, flat, atol=1e-6 * np.abs(flat).max())
 
 
-def test_a_glass_that_is_turned_faster_sings_on():
+def test_a_glass_turned_faster_continues_to_sing():
     live = LiveMarch(system("glass"), ())
     before = live.advance(4800)[0]
     faster = system("glass", **{"bodies__glass__turning": "33 rpm"})
@@ -115,7 +115,7 @@ def test_a_glass_that_is_turned_faster_sings_on():
 
 
 @pytest.mark.parametrize("change", ["friction", "scheme"])
-def test_a_contact_that_yields_stays_indented(change):
+def test_a_compliant_contact_stays_indented(change):
     live = LiveMarch(system("wheel"), ())
     before = live.advance(4800)[0].contact
     other = system("wheel", contacts__0__friction__kinetic=0.15) if change == "friction" else system("wheel")
@@ -126,7 +126,7 @@ def test_a_contact_that_yields_stays_indented(change):
     assert after["gap"][0] == pytest.approx(before["gap"][-1], rel=0.02)
 
 
-def test_what_turns_at_a_speed_of_its_own_begins_anew_with_other_modes():
+def test_a_body_at_its_own_speed_restarts_with_other_modes():
     ramp = {"kind": "ramp", "duration": 0.5}
     case = {"bodies__glass__turning_history": ramp, "drives": [{"kind": "force", "body": "finger", "z": -1.0}]}
     live = LiveMarch(system("glass", **case), ())

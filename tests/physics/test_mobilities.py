@@ -1,4 +1,4 @@
-"""Mobilities against the direct solution of the matrices, closed forms of endless beams, and each other."""
+"""Mobilities against the direct solution of the matrices, closed forms of infinite beams, and each other."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def solved(mass, stiffness, damping, response, excitation, frequency):
 
 
 @pytest.mark.parametrize(("response", "excitation", "direction"), [(0, 0, "x"), (6, 0, "x"), (3, 6, "y")])
-def test_a_beam_of_elements_has_that_of_its_matrices(response, excitation, direction):
+def test_the_mobility_of_a_beam_of_elements_is_that_of_its_matrices(response, excitation, direction):
     elements, length = 6, 0.3
     beam = st.FiniteElementBeam(STEEL, SECTION, length, elements=elements, damping=RAYLEIGH, root_support="free")
     mass, stiffness = matrices(elements, length)
@@ -74,14 +74,14 @@ def test_modes_left_out_yield_statically():
     beyond_it = natural > 1500.0
     left_out = (whole.trace("foot")[1] ** 2)[beyond_it] @ (1.0 / whole.modes().stiffness[beyond_it])
     angular = 2.0 * np.pi * low
-    # At most what all modes left out would do, were they the lowest of them, undamped.
+    # At most the response of all modes left out with the frequency of the lowest of them, undamped.
     most = angular * left_out * ((low / beyond) ** 2 / (1.0 - (low / beyond) ** 2))
     assert (np.abs(found - known) <= 1.05 * most + 1e-9 * np.abs(known)).all()
     np.testing.assert_allclose(np.abs(bare - known), angular * left_out, rtol=0.2)
 
 
 def endless(beam: st.ModalBeam, frequency: np.ndarray, zeta: float) -> np.ndarray:
-    """Driving-point mobility of an endless beam whose waves have the damping ratio of its modes.
+    """Driving-point mobility of an infinite beam whose waves have the damping ratio of its modes.
 
     ``i w / m' 2 pi`` times the integral of ``1 / (W² + 2 i zeta w W - w²)`` over wavenumbers k, ``W = c k²``: by
     partial fractions in W, ``int dk / (k² - a²) = pi i / a``. Without damping it is ``(1 - i) / 4 m' c_B`` (Cremer).
@@ -97,7 +97,7 @@ def endless(beam: st.ModalBeam, frequency: np.ndarray, zeta: float) -> np.ndarra
     return 1j * angular / (2.0 * np.pi * line) * (roots[0] - roots[1]) / (first - second)
 
 
-def test_a_long_damped_beam_is_an_endless_one():
+def test_a_long_damped_beam_is_an_infinite_one():
     zeta, frequency = 0.1, np.array([400.0, 900.0, 1600.0])
     beam = st.ModalBeam(STEEL, SECTION, 30.0, bending_modes=8000, axial_modes=0, damping=zeta)
     found = st.mobility(beam.centre, frequency=frequency).values
@@ -119,12 +119,12 @@ def test_springs_of_a_system_hold_the_points():
     found = st.mobility(first.centre, second.centre, frequency=FREQUENCY, system=system)
     np.testing.assert_allclose(found.values, known, rtol=1e-9)
     assert found.attrs["response"] == "first centre y"
-    with pytest.raises(ValueError, match="excitation must be of the body of the response"):
+    with pytest.raises(ValueError, match="excitation must be on the body of the response"):
         st.mobility(first.centre, second.centre, frequency=FREQUENCY)
 
 
-def test_modes_that_turn_split_and_those_that_stand_do_not():
-    """From where it stands, a pair of waves of a disc that turns has two peaks, about its drag times the speed."""
+def test_turning_modes_split_and_standing_ones_do_not():
+    """In a fixed frame, a pair of waves of a turning disc has two peaks, split by its drag times the speed."""
     profile = st.RectangleProfile({"disc": ((0.05, 0.15), (0.0, 0.01))})
     standing = st.AxisymmetricBody(profile, STEEL, 1500.0, "inner", axis=(0.0, 1.0, 0.0), damping=1e-4, turning=0.0)
     turned = replace(standing, turning=20.0)
@@ -160,11 +160,11 @@ def test_frequencies_left_out_show_every_peak():
         ({"frequency": "low"}, "frequency must be numbers, got 'low'"),
         ({"frequency": []}, "frequency must be a list of numbers"),
         ({"direction": "sideways"}, "direction must be one of"),
-        ({"excitation_direction": "z"}, "excitation_direction must be another than z"),
+        ({"excitation_direction": "z"}, "excitation_direction must not be z"),
         ({"excitation": 0.1}, "excitation must be a BodyPoint"),
     ],
 )
-def test_what_is_no_mobility_is_refused(arguments, message):
+def test_bad_arguments_are_refused(arguments, message):
     beam = st.ModalBeam(STEEL, SECTION, 0.8, bending_modes=3)
     with pytest.raises(ValueError, match=message):
         st.mobility(beam.centre, **arguments)

@@ -26,7 +26,7 @@ def moved(connections, duration: float = 0.5, scheme: st.ExactModal | st.Central
 
 
 @pytest.mark.parametrize("scheme", [st.ExactModal(), st.CentralDifference()])
-def test_a_shaken_support_shakes_as_the_closed_form_has_it(scheme):
+def test_a_shaken_support_follows_the_closed_form(scheme):
     """A mass at rest on a spring to a ground that moves as u sin(w t)."""
     amplitude, rate, own = 1e-3, 2.0 * np.pi * FORCED, np.sqrt(STIFFNESS / MASS)
     shaken = st.Harmonic(FORCED)
@@ -66,7 +66,7 @@ def test_an_actuator_between_two_masses_pushes_both():
     np.testing.assert_allclose(one - other, 1e-3 * (1.0 - np.cos(own * run.time)), atol=1e-9)
 
 
-def test_equilibrium_knows_what_a_spring_presses_with():
+def test_equilibrium_includes_the_force_of_a_moved_spring():
     """A mass on a belt, pressed by a spring: N = k (offset - 0), and carried by friction against another."""
     mass = st.PointMass(MASS)
     system = st.System(
@@ -88,7 +88,7 @@ def test_equilibrium_knows_what_a_spring_presses_with():
     np.testing.assert_allclose(run.displacement[:, 0], 0.4 * 40.0 / STIFFNESS, rtol=1e-6)
 
 
-def test_one_that_never_settles_is_told():
+def test_a_history_that_never_settles_is_reported():
     mass = st.PointMass(MASS)
     spring = st.Spring(mass.centre, stiffness=STIFFNESS, direction="y", offset=-1e-2, history=st.Harmonic(10.0))
     system = st.System(st.PointContact(mass.centre, st.RigidTrack()), [], [spring])
@@ -114,7 +114,7 @@ def test_a_record_runs_again(tmp_path):
 
 
 @pytest.mark.parametrize("wrong", [{"offset": np.nan}, {"offset": "1 mm"}, {"history": 3.0}])
-def test_what_it_does_not_take_is_told(wrong):
+def test_bad_arguments_are_refused(wrong):
     mass = st.PointMass(MASS)
     with pytest.raises(st.ArgumentError, match=next(iter(wrong))):
         st.Spring(mass.centre, stiffness=1.0, **wrong)

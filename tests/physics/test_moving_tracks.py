@@ -1,4 +1,4 @@
-"""Masses on belts and on ground that is shaken, loads that jump: closed forms, in both schemes."""
+"""Masses on belts and on shaken ground, loads that jump: closed forms, in both schemes."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_ground_that_rises_with_constant_acceleration_presses_harder(scheme):
 
 @BOTH
 def test_ground_of_an_accelerogram_is_exact_between_its_samples(scheme):
-    """Acceleration that rises and falls straight: the force is that of each step's centre, its second difference."""
+    """Piecewise linear acceleration: the force is that at the centre of each step, its second difference."""
     shaken = st.Sampled((0.0, 0.1, 0.2, 0.25), (0.0, 5.0, -4.0, 0.0))
     run = on_a_track(st.RigidTrack(normal_acceleration=1.0, normal_history=shaken), scheme=scheme)
     time = run.time.values
@@ -52,7 +52,7 @@ def test_ground_of_an_accelerogram_is_exact_between_its_samples(scheme):
 
 @BOTH
 def test_a_mass_lifts_off_where_the_ground_falls_faster_than_it_can(scheme):
-    """Downward acceleration that grows straight to 3 g in 0.3 s exceeds g from 0.1 s on."""
+    """Downward acceleration that grows linearly to 3 g in 0.3 s exceeds g from 0.1 s on."""
     history = st.Sampled((0.0, 0.3), (0.0, 1.0))
     run = on_a_track(st.RigidTrack(normal_acceleration=-3.0 * G, normal_history=history), scheme=scheme, duration=0.25)
     time, lost = run.time.values, run.status.values == 0
@@ -103,7 +103,7 @@ def test_a_belt_at_a_speed_is_shaken_along_itself(scheme):
 @BOTH
 @pytest.mark.parametrize("steps", [1, 7])
 def test_a_force_that_is_switched_off_gives_its_impulse(scheme, steps):
-    """Switched off at a step it gives F t to round-off; between two steps a whole step's share is given or is not."""
+    """Switched off at a step it gives F t to round-off; between two steps a whole step counts or not."""
     step = 0.2 / 1000 if steps == 1 else 0.2 / 1000.37
     history = st.Sampled((0.0, 0.2, 0.2), (1.0, 1.0, 0.0))
     run = on_a_track(
@@ -123,8 +123,8 @@ def test_a_force_that_is_switched_off_gives_its_impulse(scheme, steps):
 
 @BOTH
 @pytest.mark.parametrize("late", [0.0, 0.5, 0.3])
-def test_a_root_whose_velocity_jumps_gives_its_body_the_whole_of_it(scheme, late):
-    """A free beam dragged without contact: what is imposed on it at once adds up to the change of velocity."""
+def test_a_jump_of_the_root_velocity_acts_fully_on_its_body(scheme, late):
+    """A free beam dragged without contact: the imposed impulses add up to the change of velocity."""
     step = 1e-5
     jump = (100 + late) * step
     system = st.load_scenario("weak-pressure").system
@@ -137,8 +137,8 @@ def test_a_root_whose_velocity_jumps_gives_its_body_the_whole_of_it(scheme, late
 
 
 @BOTH
-def test_a_belt_that_jumps_to_another_speed_goes_on_from_where_it_is(scheme):
-    """It slides throughout, so friction does not see the jump; its slip does, at once."""
+def test_a_belt_that_jumps_to_another_speed_continues_in_place(scheme):
+    """It slides throughout, so friction does not change at the jump; its slip changes at once."""
     history = st.Sampled((0.0, 0.1, 0.1), (1.0, 1.0, -2.0))
     run = on_a_track(st.RigidTrack(velocity=5.0, history=history), scheme=scheme, duration=0.2)
     time, slip = run.time.values, run.slip_velocity.values
@@ -174,8 +174,8 @@ def held_by_a_spring(track, law, other=False):
 @pytest.mark.parametrize("other", [False, True], ids=["one contact", "two"])
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize(("before", "after"), [(0.1, -0.3), (0.1, 0.0), (0.0, 0.1), (0.1, 0.13)])
-def test_two_runs_are_the_one_whose_belt_jumps_on_the_way(scheme, other, law, before, after):
-    """It sticks to the belt, or slides on it, when that changes: the anchor and the bristles go with the belt."""
+def test_two_runs_equal_one_whose_belt_jumps(scheme, other, law, before, after):
+    """It sticks to the belt, or slides on it, at the change: the anchor and the bristles move with the belt."""
     words = {"scheme": scheme, "step": STEP, "sample_rate": 1.0 / STEP, "probes": []}
     half = 0.0973
     history = st.Sampled((0.0, half, half), (before, before, after))
@@ -196,7 +196,7 @@ def assert_joined(first, second, whole):
         parts = np.concatenate([first[name].values, second[name].values])
         # A contact without a state of its law has none.
         values, expected = np.nan_to_num(parts), np.nan_to_num(whole[name].values)
-        # A share of a step is a ratio of what the forces miss of the cone, down to a thousandth of them.
+        # A share of a step is a ratio of the distances of forces from the cone, down to a thousandth of them.
         share = 1e-5 if name == "status_share" else 1e-8
         # Sweeps end at a tolerance, which rounding may just miss.
         least = 1.0 if name == "contact_sweeps" else 1e-16
@@ -205,19 +205,19 @@ def assert_joined(first, second, whole):
 
 
 @BOTH
-def test_ground_and_belt_go_on_under_other_histories_and_accelerations(scheme):
+def test_ground_and_belt_continue_under_other_histories_and_accelerations(scheme):
     """From a sine of both to an acceleration of both from the velocities that they have."""
     words = {"scheme": scheme, "step": STEP, "sample_rate": 1.0 / STEP, "probes": []}
     half, sine = 0.1, st.Harmonic(3.0, phase=0.4)
     now, angular = np.array([half]), 6.0 * np.pi
     before = st.RigidTrack(0.2, 0.1, sine, sine)
-    # In the time of the run, whose start the second history sees, too.
+    # In the time of the run, whose start is also that of the second history.
     turned = st.Sampled((0.0, half, half, 0.2), (0.0, 0.0, 1.0, -1.0))
     speed, lift = (float(found(now)[0]) for found in (before.speed, before.normal_speed))
     after = st.RigidTrack(speed, lift, turned, turned, acceleration=-3.0, normal_acceleration=2.0)
 
     class Both(st.RigidTrack):
-        """The one, then the other."""
+        """One history, then the other."""
 
         def travel(self, time):
             later = before.travel(now) + after.travel(time) - after.travel(now)
@@ -237,7 +237,7 @@ def test_ground_and_belt_go_on_under_other_histories_and_accelerations(scheme):
 
 
 @pytest.mark.parametrize("velocities", [(0.1, 0.2, 0.2), (0.1, 0.0, 0.0), (0.1, 0.1, 0.1)])
-def test_a_run_goes_on_to_the_last_bit_after_a_change(velocities, tmp_path):
+def test_a_run_continues_to_the_last_bit_after_a_change(velocities, tmp_path):
     """In two parts, one of them from a file, or in one."""
     first, second, third = velocities
     words = {"step": STEP, "sample_rate": 1.0 / STEP, "probes": []}
@@ -253,7 +253,7 @@ def test_a_run_goes_on_to_the_last_bit_after_a_change(velocities, tmp_path):
         np.testing.assert_array_equal(parts, both[name].values)
 
 
-def test_a_record_that_does_not_say_where_its_belt_is_goes_on_with_the_same_one_only():
+def test_a_record_without_belt_positions_continues_only_with_the_same_belt():
     words = {"step": STEP, "sample_rate": 1.0 / STEP, "probes": []}
     systems = [held_by_a_spring(st.RigidTrack(velocity=velocity), st.Coulomb(0.3)) for velocity in (0.1, 0.2)]
     old = st.simulate(systems[0], 0.01, **words).drop_vars("state_motion")
@@ -267,8 +267,8 @@ def test_a_record_that_does_not_say_where_its_belt_is_goes_on_with_the_same_one_
 
 
 @BOTH
-def test_a_run_goes_on_from_where_all_energy_is_gone(scheme):
-    """Of the energy of shaken ground that has come to rest, rounding is left, and no fault."""
+def test_a_run_continues_after_all_energy_is_lost(scheme):
+    """After shaken ground has come to rest only rounding of the energy remains, which is not a fault."""
     shaken = st.Sampled((0.0, 0.1, 0.1, 0.2, 0.2), (1.0, 1.0, -1.0, -1.0, 0.0))
     track = st.RigidTrack(normal_acceleration=5.0, normal_history=shaken)
     first = on_a_track(track, scheme=scheme, duration=0.25)

@@ -113,7 +113,7 @@ def test_order_of_linear_bar_is_two(supports, mass):
 
 
 def test_order_of_lumped_bending_is_two():
-    """A lumped mass is right to the second order only, whatever the shape functions."""
+    """A lumped mass is accurate to second order only, for any shape functions."""
     exact = bending(2 * np.pi, 0.3)
     words = {"supports": "simply supported", "mass": "lumped"}
     order = observed_order(lambda n: families(beam_of(elements=n, **words))[0][1], exact, (16, 32))
@@ -167,7 +167,7 @@ def test_a_string_has_the_closed_form_of_fletcher():
 
 
 def test_no_tension_is_no_tension_to_the_last_bit():
-    """The frequencies are ``(k pi/L)² sqrt(EI / rho S)`` exactly, and a cutoff counts as it did."""
+    """The frequencies are ``(k pi/L)² sqrt(EI / rho S)`` exactly, and a cutoff keeps the same modes."""
     rigidity, line = STEEL.young * SQUARE.second_moment, STEEL.density * SQUARE.area
     numbers = np.arange(1, 51)
     known = (numbers * np.pi / 0.3) ** 2 * np.sqrt(rigidity / line)

@@ -1,6 +1,6 @@
-"""The sound of bodies in space: surfaces, motion driven again, fits, and the whole way.
+"""The sound of bodies in space: surfaces, motion driven again, fits, and the whole computation.
 
-Spheres, a disc, a bar and the balance of power are cases of `stridula verify`; here they must fail where they should.
+Spheres, a disc, a bar and the balance of power are cases of `stridula verify`; negative controls are here.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def test_a_surface_is_closed_and_moves_as_the_body(body, area, volume):
     assert surface.areas.sum() == pytest.approx(area, rel=1e-9)
     assert found == pytest.approx(volume, rel=1e-3)
     assert np.abs(flow).max() < 1e-9 * area
-    # A rigid translation along z, by what it gives the modes, moves the surface by the z of its normals.
+    # A rigid translation along z, in modal coordinates, moves the surface by the z of its normals.
     free = body if body.kind == "solid" else replace(body, held=())
     modes, surface = free.modes(), free.surface().as_points
     moved = surface.shapes @ modes.translation[2][~modes.massless]
@@ -72,7 +72,7 @@ def test_a_tetrahedron_has_the_surface_of_its_faces():
 
 
 def seen(system, body, place, direction, duration=0.04):
-    """Acceleration of a point as the march has it, and from its modes driven again."""
+    """Acceleration of a point in the march, and from its modes driven again."""
     probe = st.Acceleration(body.at(place), direction)
     run = st.simulate(system, duration, step=2e-6, sample_rate=1e5, probes=[probe])
     moved = redriven(run, system)
@@ -162,7 +162,7 @@ def test_a_record_is_heard_without_the_mesh(stridula, tmp_path):
     known, found = (st.radiate(run, one, place).values for one in (system, again))
     assert np.abs(known).max() > 0.0
     np.testing.assert_array_equal(found, known)
-    # By its form, from lists as a scenario has them.
+    # By its form, from lists as in a scenario.
     code, out, err = stridula("sound", "run.nc", "--listener", "0.3,0.3,0.5", "--wav", "a.wav")
     assert (code, err) == (0, "")
     assert "a.wav: 1 channel, 48 kHz" in out
@@ -172,7 +172,7 @@ def test_a_record_is_heard_without_the_mesh(stridula, tmp_path):
     assert not bare.has_surface
     assert bare != body
     with pytest.raises(
-        ValueError, match="system must have a body with a surface to be heard, got none of slider, track"
+        ValueError, match="system must have a body with a surface, which radiates sound, got none of slider, track"
     ):
         st.radiate(run, st.System(replace(system.contacts[0], track=bare.at(bare.point_names[0]))), place)
 
@@ -193,7 +193,7 @@ def test_sums_and_choices_of_bodies():
     system = st.System(contact, pushes)
     run = st.simulate(system, 5e-3, step=1e-5, sample_rate=2e4)
     place = (0.3, 0.3, 0.5)
-    # Before it arrives from both of them each alone is silent.
+    # Before the sound arrives from both, each alone is silent.
     late = slice(60, None)
     parts = [st.radiate(run, system, place, bodies=[one]).values[late] for one in (plate, block)]
     both = st.radiate(run, system, place).values[late]
@@ -208,7 +208,7 @@ def test_sums_and_choices_of_bodies():
 
 
 def test_a_mesh_without_points_within_falls_short_at_a_resonance(monkeypatch):
-    """Negative control: at ka = pi a standing wave fits into the sphere, and the integral alone does not tell."""
+    """Negative control: at ka = pi a standing wave fits into the sphere, and the integral alone is not sufficient."""
     place, wave = open_air.PLACES[:1], pi / open_air.RADIUS
     known = open_air.of_sphere(wave, place)[:, :1]
     sphere = open_air.meshed_sphere(4)
@@ -243,7 +243,7 @@ def test_thin_meshed_bodies_sound_as_the_same_bodies_of_revolution(thickness, di
     mesh, ears = meshed_disc(thickness, divisions, cut), np.array([[0.3, 0.1, 0.5], [0.2, 0.05, 0.1]])
     for wavenumber in (10.0, 60.0):
         known, found = (open_air.heard(one, wavenumber, ears) for one in (rings, mesh))
-        # 0.3 dB: both meet edges to some 3 %.
+        # 0.3 dB: both have errors of some 3 % at edges.
         np.testing.assert_allclose(np.abs(found), np.abs(known), rtol=0.035)
 
 
@@ -282,7 +282,7 @@ def test_equations_that_tell_nothing_stay_refused():
 
 
 def test_patches_in_closed_form_are_the_integral_over_points():
-    """Over a square and a triangle, seen from aside, from below and from one's own plane."""
+    """Over a square and a triangle, from the side, from below and from within the plane."""
     square = np.array([[0.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.9, 0.8, 0.0], [0.0, 0.7, 0.0]])
     triangle = square[[0, 1, 2, 2]]
     nodes, weights = np.polynomial.legendre.leggauss(120)
@@ -303,7 +303,7 @@ def test_patches_in_closed_form_are_the_integral_over_points():
 
 @pytest.mark.parametrize("beside", [0.0, 1e-11, 1e-9, 1e-6])
 def test_a_place_near_an_edge_has_a_finite_integral(beside):
-    """A square seen from beside a side has half of what a rectangle of twice its length has in its middle."""
+    """At the middle of a side, a square has half the integral of a rectangle of twice its length at its centre."""
     square = np.array([[[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]])
     whole = np.array([[[0.0, -1, 0], [1, -1, 0], [1, 1, 0], [0, 1, 0]]])
     (half,), _ = patch_integrals(np.array([[0.4, beside, 0.0]]), square)
@@ -331,7 +331,7 @@ def test_pieces_of_no_point_are_refused():
 
 
 def test_a_surface_without_its_pieces_is_read_as_squares():
-    """As files have it that were written before there were pieces."""
+    """As in files written before pieces existed."""
     whole = open_air.meshed_sphere(4).surface
     names = ("points", "normals", "areas", "shapes")
     bare = surface_of({name: getattr(whole, name).tolist() for name in names})
@@ -377,11 +377,11 @@ def test_beyond_the_highest_mode_fits_end_and_below_it_responses_stay():
     assert np.abs(spectra[1][frequency > 6.6e3]).max() < 5e-3 * np.abs(spectra[1]).max()
 
 
-def test_a_start_in_motion_is_said_to_be_left_out():
+def test_a_start_in_motion_is_reported_as_left_out():
     plate = disc(0.0, cutoff=800.0)
     apart = st.RigidBody(1.0, points={"tip": (0.0, 0.0, 0.0)})
     contact = st.PointContact(apart.at("tip"), plate.at(HERE), gap=1.0, normal=(0.0, 0.0, 1.0))
-    left_out = "the vibration that it starts with is not included"
+    left_out = "vibration at the start is not included"
     for start in (st.InitialVelocity(plate, z=0.1), st.InitialState(apart, velocity=[0.0, 0.0, 1.0])):
         system = st.System(contact, [start])
         heard = st.radiate(st.simulate(system, 2e-3, sample_rate=1e4), system, (0.3, 0.3, 0.5))
@@ -392,7 +392,7 @@ def test_a_start_in_motion_is_said_to_be_left_out():
 
 
 def fits_made(monkeypatch, surface):
-    """Return impulse responses of a body in what stands for a new process, and the number of fits made for them."""
+    """Return impulse responses of a body as in a new process, and the number of fits computed for them."""
     counted = []
     fit = RingSources.fit
     monkeypatch.setattr(RingSources, "fit", lambda self, wavenumber: counted.append(1) or fit(self, wavenumber))
@@ -411,7 +411,7 @@ def test_fits_are_kept_for_the_next_process(monkeypatch, tmp_path):
     assert none == 0
     np.testing.assert_array_equal(again.responses[0].taps, first.responses[0].taps)
     np.testing.assert_array_equal(again.errors, first.errors)
-    # A body that moves in another way is another one.
+    # A body with other mode shapes is a different one.
     other = open_air.ring_sphere(12)
     other.shapes[3, 1] *= 1.5
     moved, made = fits_made(monkeypatch, other)
@@ -440,7 +440,7 @@ def test_slopes_of_rings_in_single_precision_are_the_plain_integral():
 
 
 def hat() -> RingSources:
-    """A disc with a hat, two corners of which turn inwards, that moves outwards on its inside and along its axis."""
+    """A disc with a hat, with two reentrant corners, that moves outwards on its inside and along its axis."""
     parts = {
         "disc": ((0.07, 0.13), (-0.01, 0.01)),
         "wall": ((0.06, 0.07), (-0.01, 0.05)),
@@ -454,7 +454,7 @@ def hat() -> RingSources:
     )
 
 
-def test_corners_that_turn_inwards_are_met(monkeypatch):
+def test_reentrant_corners_are_accurate(monkeypatch):
     place, wave = np.array([[0.2, 0.3, 0.5], [0.0, 0.0, 1.0]]), 30.0
 
     def found():
@@ -465,7 +465,7 @@ def test_corners_that_turn_inwards_are_met(monkeypatch):
     pressure, errors = found()
     assert errors.max() < 0.06
     monkeypatch.setattr(ring_surfaces, "PART_OF_WAY", 1e9)
-    # Negative control: parts as long there as elsewhere.
+    # Negative control: elements as long there as elsewhere.
     coarse, missed = found()
     assert missed.max() > 0.1
     monkeypatch.setattr(ring_surfaces, "PART_OF_WAY", 0.3)
@@ -477,7 +477,7 @@ def test_corners_that_turn_inwards_are_met(monkeypatch):
 
 
 def test_a_wall_of_a_hundredth_of_the_radius_carries_the_air_of_a_thin_disc():
-    """The air that a disc carries along, against what thicker ones tell of a thin one; its limit is 8 / 3."""
+    """The air carried by a disc, against an extrapolation from thicker ones; the limit of a thin one is 8 / 3."""
 
     def carried(share):
         thickness, far = share * open_air.RADIUS, 5.0

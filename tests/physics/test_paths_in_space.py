@@ -34,7 +34,7 @@ WORDS = {"step": 2e-6, "sample_rate": 5e4}
 
 
 def rubbed(track, law=None, connections=()) -> st.System:
-    """A rod that is pushed along a track of the plane and presses on it, one that moves by some millimetres."""
+    """A rod that is pushed along a planar track and presses on it, moving by some millimetres."""
     contact = st.PointContact(ROD.tip, track, at=0.3, friction=law or st.Coulomb(0.3), gap=1e-5)
     push = st.Force(ROD.root, x=40.0, y=-60.0, history=st.Ramp(1e-3))
     return st.System(contact, [push], connections)
@@ -46,7 +46,7 @@ def joined(track, law=None) -> st.System:
 
 
 def two(track, law=None) -> st.System:
-    """Two masses that slide on a track, each under a weight of its own."""
+    """Two masses that slide on a track, each under its own weight."""
     masses = [st.PointMass(0.2, name="first"), st.PointMass(0.3, name="second")]
     contacts = [
         st.PointContact(mass.centre, track, at=place, friction=law or st.Coulomb(0.3), gap=1e-5, name=mass.name)
@@ -63,7 +63,7 @@ LAWS = [st.Coulomb(0.3), st.StaticKinetic(0.5, 0.3), st.LuGre(0.4, 0.3, 0.05, 2e
 @pytest.mark.parametrize("track", [BEAM, PLATE], ids=lambda one: one.kind)
 @pytest.mark.parametrize("made", [rubbed, joined, two], ids=lambda one: one.__name__)
 @pytest.mark.parametrize("rotation", [np.eye(3), TURNED], ids=["upright", "turned"])
-def test_a_track_in_any_plane_is_as_good_as_in_its_own(made, track, law, rotation):
+def test_results_do_not_depend_on_the_plane_of_a_track(made, track, law, rotation):
     space, flat = IntoSpace(rotation), made(track, law)
     probes = [
         st.Acceleration(track.at(0.2), "y"),
@@ -104,7 +104,7 @@ def test_its_rows_are_turned():
     assert hash(turned) == hash(replace(PLATE, plane=TURNED[:, :2].T))
 
 
-# Friction across the track, too.
+# Also with friction across the track.
 
 # The weight rises in 10 ms: there is no sudden friction at the start.
 MASS, WEIGHT, FRICTION, RISE = 0.3, 30.0, 0.2, 0.01
@@ -155,7 +155,7 @@ def by_equations(times):
 @pytest.mark.parametrize("rotation", [np.eye(3), TURNED], ids=["upright", "turned"])
 @pytest.mark.parametrize("scheme", [st.CentralDifference(), st.ExactModal()], ids=lambda one: one.name)
 def test_a_mass_thrown_across_a_soft_beam_moves_by_its_equations(scheme, rotation):
-    """Of first order in the step, as in the plane: the force of a step acts where the contact is at its end."""
+    """Of first order in the step, as in the plane: the force of a step acts at the place of the contact at its end."""
     errors, swings = [], []
     for step in (4e-5, 2e-5, 1e-5):
         run = st.simulate(thrown(rotation), 0.05, scheme=scheme, step=step, sample_rate=1.0 / step, probes=[])
@@ -183,7 +183,7 @@ def test_friction_is_along_the_slip_on_a_track():
 # Records, restart, runs side by side, the ends, sound.
 
 
-def test_a_run_goes_on_and_runs_again(tmp_path):
+def test_a_run_continues_and_runs_again(tmp_path):
     system, names = thrown(TURNED), ("normal_force", "tangential_force", "contact_position", "acceleration")
     whole, *_, again = goes_on(system, 0.02, names, tmp_path, step=2e-5, sample_rate=5e4)
     assert again.system == system
@@ -228,7 +228,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("case", REFUSED)
-def test_what_there_is_none_of_is_told(case):
+def test_bad_arguments_are_refused(case):
     make, words = REFUSED[case]
     with pytest.raises(st.ArgumentError, match=f"^{words}"):
         make()

@@ -1,4 +1,4 @@
-"""Planar bodies in space: whatever plane they are put into, they do what they do in their own."""
+"""Planar bodies in space: their motion does not depend on the plane."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def plane():
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_any_plane_is_as_good_as_its_own(plane, seed):
+def test_results_do_not_depend_on_the_plane(plane, seed):
     turn = np.eye(3) if seed == 0 else Rotation.random(random_state=seed).as_matrix()
     run = placed(turn)
     for name in ("normal_force", "tangential_force"):
@@ -46,7 +46,7 @@ def test_any_plane_is_as_good_as_its_own(plane, seed):
     assert float(np.abs(run.tangential_force.isel(tangent=1)).max()) < 1e-9 * float(plane.normal_force.max())
 
 
-def test_what_no_planar_body_is_is_told():
+def test_bad_placements_are_refused():
     solid = st.RigidBody(1.0)
     for make, words in (
         (lambda: st.ModalBody.placed(solid, {"centre": "centre"}), "body must be a body of the plane"),
@@ -61,7 +61,7 @@ def test_what_no_planar_body_is_is_told():
 
 
 def test_a_mass_keeps_its_weight():
-    """A point mass that falls along what was y."""
+    """A point mass that falls along the former y."""
     turn = Rotation.from_euler("z", 90.0, degrees=True).as_matrix()
     mass = st.ModalBody.placed(st.PointMass(0.5), {"centre": "centre"}, turn[:, 0], turn[:, 1])
     assert mass.total_mass == pytest.approx(0.5)

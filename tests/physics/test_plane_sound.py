@@ -1,4 +1,4 @@
-"""The sound of a system in the plane: its parts are those heard alone, a rigid rod is a dipole, a wall mirrors."""
+"""The sound of a system in the plane: the sum of its parts, a rigid rod as a dipole, the image of a wall."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .cases import STEEL
 
 AIR = st.Air()
 RATE, SAMPLES, FREQUENCY = 100e3, 2000, 500.0
-# So stiff that it moves as a whole.
+# So stiff that it moves as a rigid body.
 RIGID = st.Material(1e16, 7800.0)
 ROD = st.FiniteElementBeam(RIGID, st.Circle(0.004), 0.02, elements=2, name="rod")
 TRACK = st.ModalBeam(STEEL, st.Rectangle(0.02, 0.02), 0.25, damping=0.03, cutoff=15e3)
@@ -57,7 +57,7 @@ def dipole(place, along, force, area=2.0 * ROD.section.area):
 
 @pytest.mark.parametrize("angle", [0.0, 40.0])
 def test_a_short_rigid_rod_is_a_dipole(angle):
-    """Rubbed at its tip, its root guided: it moves as a whole along the force on the tip, against that on the track."""
+    """Rubbed at its tip, with guided root: it moves rigidly along the force on the tip, against that on the track."""
     lean = np.radians(angle)
     rod = st.FiniteElementBeam(RIGID, st.Circle(0.004), 0.02, lean, elements=2)
     middle = 0.01 * np.array([np.sin(lean), 0.0, np.cos(lean)])
@@ -66,7 +66,7 @@ def test_a_short_rigid_rod_is_a_dipole(angle):
     found = st.radiate(record(0.0, swinging()), on_the_ground(rod), places, air=AIR)
     late = slice(1000, -100)
     for k, place in enumerate(places):
-        # Of the force along x, its share across the rod; what moves it along itself is not heard.
+        # The part of the force along x across the rod; axial motion does not radiate.
         known = dipole(np.subtract(place, middle), across, -2.0 * np.cos(lean))[late]
         assert np.abs(found.values[late, k] - known).max() < 2e-3 * np.abs(known).max()
     assert found.attrs["baffled"] == 0
@@ -74,7 +74,7 @@ def test_a_short_rigid_rod_is_a_dipole(angle):
 
 
 def test_normal_forces_and_drives_move_a_leaning_rod_too():
-    """What presses it up is heard as what pushes it sideways is, by the share across it; the drives as the contacts."""
+    """Upward and sideways forces are heard by their part across the rod, from drives as from contacts."""
     rod = st.FiniteElementBeam(RIGID, st.Circle(0.004), 0.02, np.radians(45.0), elements=2)
     place = (1.0, 0.2, -0.5)
     rubbed = st.radiate(record(0.0, -swinging()), on_the_ground(rod), place, air=AIR).values
@@ -138,7 +138,7 @@ def pulse(middle=5e-3, width=2e-4):
 
 
 @pytest.mark.parametrize("baffled", [True, False])
-def test_the_whole_is_the_track_alone_and_the_slider(baffled):
+def test_the_sound_is_the_sum_of_track_and_slider(baffled):
     system, run = on_the_beam(), record(pulse(), 0.3 * pulse(), 0.05)
     alone = st.radiate(run, TRACK, PLACE, baffled=baffled)
     whole = st.radiate(run, system, PLACE, baffled=baffled)
@@ -161,7 +161,7 @@ def test_a_wall_adds_the_image_of_the_slider():
 
 
 def test_the_place_of_the_slider_counts():
-    """Moved along the track with its listener it sounds the same, and elsewhere not; tracks hear their own contacts."""
+    """Moved along the track with its listener it sounds the same, elsewhere not; tracks use their own contacts."""
     system = on_the_beam(2)
     first, second = system.bodies[0], system.bodies[2]
     assert {first.name, second.name} == {"rod 0", "rod 1"}
@@ -178,7 +178,7 @@ def test_the_place_of_the_slider_counts():
     )
 
 
-def test_a_slider_that_moves_along_is_heard_from_the_middle_of_its_way():
+def test_a_moving_slider_is_heard_from_the_middle_of_its_way():
     system = on_the_beam()
     way = np.linspace(0.05, 0.15, SAMPLES)
     found = st.radiate(record(pulse(), 0.0, way), system, PLACE, bodies=[system.slider])
@@ -202,7 +202,7 @@ def test_beams_that_nothing_pushes_are_silent():
     assert "silence: nothing pushes the beams" in quiet.attrs["notes"]
 
 
-def test_bodies_without_a_surface_are_said():
+def test_bodies_without_a_surface_are_reported():
     mass = st.PointMass(0.1, name="bob")
     system = st.System([st.PointContact(mass.centre, TRACK, at=0.1)])
     found = st.radiate(record(pulse(), 0.0, 0.1), system, PLACE)
@@ -221,7 +221,7 @@ def test_bodies_without_a_surface_are_said():
         ({"run": record(pulse(), 0.0, 0.05).drop_vars("tangential_force")}, "run must be a record with tangential"),
     ],
 )
-def test_what_is_refused(words, message):
+def test_bad_arguments_are_refused(words, message):
     system = on_the_beam()
     given = {"run": record(pulse(), 0.0, 0.05), "listener": PLACE} | words
     if given.get("bodies") == "slider":
@@ -230,9 +230,11 @@ def test_what_is_refused(words, message):
         st.radiate(given.pop("run"), system, given.pop("listener"), **given)
 
 
-def test_a_wall_takes_a_track_and_something_a_sound():
+def test_a_wall_needs_a_track_and_sound_needs_a_surface():
     with pytest.raises(ValueError, match="baffled must be False, or left out, without a track"):
         st.radiate(record(0.0, pulse()), on_the_ground(ROD), PLACE, baffled=True)
     mass = st.PointMass(0.1)
-    with pytest.raises(ValueError, match="system must have a body with a surface to be heard, got none of slider"):
+    with pytest.raises(
+        ValueError, match="system must have a body with a surface, which radiates sound, got none of slider"
+    ):
         st.radiate(record(0.0, pulse()), st.System(st.PointContact(mass.centre, st.RigidTrack())), PLACE)

@@ -1,4 +1,4 @@
-"""The surfaces of bodies of the plane: closed, moved as the bodies are, and fit for the sound in open air."""
+"""The surfaces of planar bodies: closed, moving with the bodies, and suitable for sound in open air."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def test_bodies_without_a_surface_say_why(body, message):
 
 
 def test_a_plate_in_open_air_shorts_out_below_and_sounds_as_in_a_baffle_far_above():
-    """At 4 kHz the air before it is moved as if there were a wall, to 0.7 dB; at 50 Hz it flows round the edges."""
+    """At 4 kHz the sound is that with a wall to 0.7 dB; at 50 Hz the air flows round the edges."""
     place, radiator = np.array([0.1, 0.2, 0.5]), SurfacePressures(PANE.surface())
     # World x is along its line, in the middle of its width, y along its normal, z across to the right.
     seen = np.array([place[0], place[2], -(place[1] - 0.125)])

@@ -1,4 +1,4 @@
-"""Plates as tracks: against closed forms, beams, and what symmetry says.
+"""Plates as tracks: against closed forms, beams, and symmetry.
 
 A plate far wider than long, bent without Poisson's effect, is a beam: ``(m/a)² + (1/b)²`` tends to ``(m/a)²``, and the
 modes (m, 1) move at mid-width as those of a beam of half the mass, whose amplitude ``sqrt(2/M)`` is ``sqrt(4/2M)``.
@@ -92,7 +92,7 @@ def recorded(system, duration=0.02):
 
 
 def assert_same(one, other, sense=1.0, turned_at=0.0):
-    """The same runs but for round-off that friction and impacts let grow; positions mirrored where `sense` is -1."""
+    """The same runs up to round-off that friction and impacts amplify; positions mirrored if `sense` is -1."""
     for name in ("normal_force", "gap", "kinetic_and_elastic", "convection_work"):
         np.testing.assert_allclose(one[name], other[name], atol=1e-6 * np.abs(one[name]).max())
     np.testing.assert_allclose(sense * one.tangential_force, other.tangential_force, atol=1e-5)
@@ -201,12 +201,12 @@ def test_the_ledger_closes(name, scheme):
     run = st.simulate(make(), 0.02, scheme=scheme, step=step, probes=[])
     flow = float(np.abs(run.drive_work).max() + run.kinetic_and_elastic.max())
     assert float(np.abs(run.ledger_residual).max()) < 1e-11 * flow
-    # What the moving contact point does to the plate is no round-off.
+    # The effect of the moving contact point on the plate exceeds round-off.
     assert float(np.abs(run.convection_work).max()) > 1e-9 * flow
 
 
 @pytest.mark.parametrize("name", PLATES)
-def test_a_run_goes_on_to_the_last_bit(name):
+def test_a_run_continues_to_the_last_bit(name):
     make, step = SYSTEMS[name]
     words = {"step": step, "sample_rate": 0.1 / step}
     whole, first = (st.simulate(make(), duration, **words) for duration in (0.02, 0.01))

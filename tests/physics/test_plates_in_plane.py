@@ -1,4 +1,4 @@
-"""Plates that move in their plane, too: against elements in plane stress, beams and what symmetry says."""
+"""Plates that also move in their plane: against elements in plane stress, beams and symmetry."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def elements(sheet: st.ModalPlate, cells: tuple[int, int]):
 
 
 def test_frequencies_are_those_of_elements():
-    """The error of elements falls by four as they are halved; what is left of it then is of fourth order."""
+    """The error of elements falls by four as they are halved; the extrapolated error is of fourth order."""
     exact, found = in_plane(SHEET, SHEET.modes().frequency)[:8], []
     for cells in ((16, 12), (32, 24)):
         stiffness, mass, *_ = elements(SHEET, cells)
@@ -63,7 +63,7 @@ def test_frequencies_are_those_of_elements():
         found.append(np.sqrt(np.sort(squared)) / (2.0 * pi))
     np.testing.assert_allclose((found[0] - exact) / (found[1] - exact), 4.0, atol=0.06)
     np.testing.assert_allclose((4.0 * found[1] - found[0]) / 3.0, exact, rtol=1e-4)
-    # Negative control: of a little other Poisson's ratio.
+    # Negative control: a slightly different Poisson's ratio.
     other = replace(SHEET, material=replace(STEEL, poisson=0.301))
     assert abs(in_plane(other, other.modes().frequency)[:8] / exact - 1.0).max() > 3e-4
 
@@ -187,7 +187,7 @@ def test_a_slider_on_it_is_on_a_beam():
     stable, other = (st.sliding_stability(on(track)) for track in bar())
     np.testing.assert_allclose(stable.frequency, other.frequency, rtol=1e-6, atol=1e-4)
     np.testing.assert_allclose(stable.growth_rate, other.growth_rate, rtol=1e-5, atol=1e-4)
-    # Negative control: it is no rigid one.
+    # Negative control: it differs from a rigid one.
     still = st.simulate(on(replace(bar()[0], in_plane=False)), 0.015, **words)
     assert abs(still.normal_force - on_beam.normal_force).max() > 0.1 * on_beam.normal_force.max()
 
@@ -272,7 +272,7 @@ def grows(system: st.System) -> complex:
     return complex(found.growth_rate[fastest], 2.0 * pi * found.frequency[fastest])
 
 
-def test_friction_that_falls_feeds_it():
+def test_falling_friction_feeds_it():
     """A rigid rider sees ``T = (static - slope (v - t q')) N``: a damping matrix ``-slope N t^T t`` on the modes."""
     system = rubbed()
     sheet = system.track
@@ -284,10 +284,10 @@ def test_friction_that_falls_feeds_it():
     known = known[known.imag > 0.0]
     known = known[np.argmax(known.real)]
     found = grows(system)
-    # What the rider gives: 1e-4 of the frequency.
+    # Effect of the rider's compliance: 1e-4 of the frequency.
     assert found.real == pytest.approx(known.real, rel=3e-4)
     assert found.imag == pytest.approx(known.imag, rel=1e-4)
-    # Negative control: a plate that is rigid in its plane has nothing to feed.
+    # Negative control: a plate that is rigid in its plane does not grow.
     assert grows(rubbed(in_plane=False)).real < 0.0
 
 
@@ -303,7 +303,7 @@ def test_it_grows_in_time_as_its_exponent_says():
     assert seen.imag == pytest.approx(known.imag, rel=2e-4)
 
 
-def test_it_does_not_sound_and_sound_does_not_brake_it():
+def test_it_radiates_no_sound_and_sound_does_not_damp_it():
     words = {"damping": 0.02, "cutoff": 15e3}
     rigid = st.ModalPlate(STEEL, 0.02, 0.25, 0.15, **words)
     sheet = replace(rigid, in_plane=True)

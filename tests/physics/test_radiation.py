@@ -1,7 +1,7 @@
-"""The sound of a track: its motion against the march, the whole way against spectra, air, added mass.
+"""The sound of a track: its motion against the march, the pressure against spectra, air, added mass.
 
-Piston, monopole, Wallace's efficiencies, directivities and the balance of energy are cases of `stridula verify`; here
-they must fail where they should.
+Piston, monopole, Wallace's efficiencies, directivities and the balance of energy are cases of `stridula verify`;
+negative controls are here.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from .cases import STEEL
 
 AIR = st.Air()
 RATE = 100e3
-# Short and stiff: what a blow leaves of them rings off within 40 ms.
+# Short and stiff: the response to a blow decays within 40 ms.
 BEAM = st.ModalBeam(STEEL, st.Rectangle(0.02, 0.02), 0.25, damping=0.03, cutoff=15e3)
 PLATE = st.ModalPlate(STEEL, 0.02, 0.25, 0.15, damping=0.02, cutoff=15e3)
 PLACE = 0.09
@@ -134,10 +134,10 @@ def centre_acceleration(track, run, droop=1.0) -> np.ndarray:
 
 
 def test_the_track_moves_again_as_it_did_in_the_march(squeal):
-    """Where each step is a sample: but for the band above 5/12 of the rate, which is not undone, the very same.
+    """If each step is a sample, exactly the same, except for the band above 5/12 of the rate.
 
-    The probe is a second difference over steps h, which takes ``sinc²(f h)`` of each mode. In the march a force moves a
-    mode as one that is there for good, ``tan(w h / 2) / (w h / 2)`` as much as the impulse that it is.
+    The probe is a second difference over steps h, with a gain of ``sinc²(f h)``. In the march a force moves a mode like
+    a constant one, ``tan(w h / 2) / (w h / 2)`` times as much as the impulse that it is.
     """
     track, run = squeal
     assert run.attrs["steps_per_sample"] == 1
@@ -154,7 +154,7 @@ def test_the_track_moves_again_as_it_did_in_the_march(squeal):
 
 
 def test_means_over_two_steps_are_enough_below_ten_kilohertz():
-    """At the default 100 kHz what is missing is the force above 50 kHz, folded down."""
+    """At the default 100 kHz the error is the force above 50 kHz, aliased."""
     scenario = st.load_scenario("squeal", {"duration": "80 ms"})
     run = scenario.simulate()
     assert run.attrs["steps_per_sample"] == 2
@@ -179,7 +179,7 @@ def test_means_are_undone(steps):
     np.testing.assert_allclose(taps * mean, 1.0, atol=1e-5)
 
 
-# The whole way
+# The whole computation
 
 
 @pytest.mark.parametrize(
@@ -263,7 +263,7 @@ def test_the_other_side_of_the_middle_sounds_the_same():
 
 @pytest.mark.parametrize("rate", [48e3, 44.1e3, 22.05e3, 8e3])
 def test_other_sample_rates_carry_the_same_sound(rate):
-    """Below both bandwidths: spectra agree; above half the new rate nothing is left that could fold."""
+    """Below both bandwidths: spectra agree; nothing above half the new rate could be aliased."""
     fine = st.radiate(record(5000), BEAM, (0.2, 0.1, 0.5))
     coarse = st.radiate(record(5000), BEAM, (0.2, 0.1, 0.5), sample_rate=rate)
     bandwidth = coarse.attrs["bandwidth"]
@@ -277,14 +277,14 @@ def test_other_sample_rates_carry_the_same_sound(rate):
 
 
 def test_nothing_is_heard_before_it_arrives():
-    """The first sound comes from the nearest point; what the band limit spreads ahead of it is cut off, and small."""
+    """The first sound comes from the nearest point; the small pre-ringing of the band limit is cut off."""
     run = record(2000)
     found = st.radiate(run, BEAM, [(PLACE, 0.0, 0.4), (PLACE, 0.0, 1.5)])
     time, values = found.time.values, found.values
     for number, away in enumerate((0.4, 1.5)):
         assert found.attrs["distance"][number] == pytest.approx(away)
         assert not values[time < away / AIR.speed, number].any()
-        # Four widths before the blow it has 1e-7 of its height.
+        # Four widths before its peak the blow has 1e-7 of its height.
         early = time < BLOW - 4.0 * WIDTH + away / AIR.speed
         assert np.abs(values[early, number]).max() < 1e-3 * np.abs(values[:, number]).max()
     assert time[0] == 0.0
@@ -317,8 +317,8 @@ def test_quadrature_is_fine_enough():
     assert error(*found) < 1e-5
 
 
-def test_places_change_roles():
-    """Reciprocity: a small source here, heard there, is the same as one there, heard here."""
+def test_source_and_listener_are_reciprocal():
+    """Reciprocity: exchanging a small source and the listener does not change the sound."""
     kernel, heard = interpolation(0.4), []
     for source, listener in (((0.1, 0.2), (0.4, -0.1)), ((0.4, -0.1), (0.1, 0.2))):
         element = Surface(np.array([source]), np.array([1e-4]), lambda at: np.ones((len(at), 1)))
@@ -367,7 +367,7 @@ def test_damping_by_sound_is_light_and_largest_near_coincidence():
     np.testing.assert_allclose(damping, full * efficiency, rtol=1e-12)
 
 
-# Cases must be able to fail
+# Negative controls of cases
 
 
 def missed(outcome) -> int:
@@ -391,7 +391,7 @@ def test_wallace_close_by_falls_short(monkeypatch):
     assert missed(radiation.wallace()) == 1, "three sides away is not far for a quadrupole"
 
 
-# What is refused, and what is only said
+# Refusals and notes
 
 
 @pytest.mark.parametrize(
@@ -414,7 +414,7 @@ def test_wallace_close_by_falls_short(monkeypatch):
         ({"track": st.ModalBeam(STEEL, st.Section(1e-4, 1e-9), 0.8), "baffled": False}, "a Rectangle or a Circle"),
         ({"track": PLATE, "baffled": False, "listener": (0.1, 0.05, 1e-4)}, "at least 0.000292 m from the plate"),
         ({"track": st.RigidTrack()}, "must be a ModalBeam or a ModalPlate, got a RigidTrack$"),
-        ({"track": replace(BEAM, length=0.08)}, "the one the run presses on"),
+        ({"track": replace(BEAM, length=0.08)}, "must include all contact positions"),
         ({"run": record(1)}, "at least 2 samples"),
         ({"run": record(100, ended="energy created")}, "energy created"),
         ({"run": record(100).drop_vars("normal_force")}, "run must be a record with normal_force, got one"),
@@ -424,7 +424,7 @@ def test_wallace_close_by_falls_short(monkeypatch):
         ({"run": record(100, height=np.nan)}, "normal_force must be finite"),
     ],
 )
-def test_what_is_refused(words, message):
+def test_bad_arguments_are_refused(words, message):
     given = {"run": record(100), "track": BEAM, "listener": (0.1, 0.0, 1.0)} | words
     with pytest.raises(ValueError, match=message) as caught:
         st.radiate(given.pop("run"), given.pop("track"), given.pop("listener"), **given)
@@ -450,7 +450,7 @@ def test_a_ratio_of_rates_that_would_drift_is_refused():
         ratio_of(12345.678901, RATE, 10**7)
 
 
-def test_silence_is_said():
+def test_silence_is_reported():
     quiet = st.radiate(record(100, height=0.0), BEAM, (0.1, 0.0, 1.0))
     assert not quiet.values.any()
     assert "never presses" in quiet.attrs["notes"]
@@ -460,7 +460,7 @@ def test_silence_is_said():
     assert not far.values[:, 1].any()
 
 
-def test_what_is_left_out_is_said():
+def test_omissions_are_reported():
     many = replace(BEAM, cutoff=None, bending_modes=20)
     heard = st.radiate(record(500), many, (0.1, 0.0, 0.5))
     assert heard.attrs["modes"] < 20

@@ -1,4 +1,4 @@
-"""Sound from the motion of modes as the march recorded it, beside what forces make of it again."""
+"""Sound from recorded motion of modes, against that of motion driven again by forces."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def levels(signal, interval, bands=BANDS):
 
 @pytest.fixture(scope="module")
 def squeal():
-    """The squealing pair, its motion recorded at 50 kHz, and the sound that forces at every step make of it."""
+    """The squealing pair, its motion recorded at 50 kHz, and its sound from forces at every step."""
     scenario = st.load_scenario("squeal", {"duration": "60 ms", "step": "5 us"})
     system = scenario.system
     run = scenario.simulate(sample_rate=50e3, probes=motions(system.slider, system.track))
@@ -42,18 +42,18 @@ def squeal():
     return system, run, known.values[:, 0]
 
 
-def test_a_squealing_pair_sounds_as_its_forces_at_every_step_make_it(squeal):
+def test_the_sound_of_a_squealing_pair_is_that_of_its_forces_at_every_step(squeal):
     system, run, known = squeal
     found = st.radiate(run, system, PLACE)
     again = st.radiate(run.drop_vars(VARIABLE), system, PLACE)
     assert [one.attrs["motion"] for one in (found, again)] == ["recorded", "driven again"]
     true = levels(known, 2e-5)
     assert np.abs(levels(found.values[:, 0], 2e-5) - true).max() < 0.1
-    # Means over four steps fold what they hold above 25 kHz.
+    # Means over four steps alias frequencies above 25 kHz.
     assert np.abs(levels(again.values[:, 0], 2e-5) - true).max() > 0.2
 
 
-def test_it_is_kept_in_single_precision_with_whose_modes_they_are(squeal):
+def test_it_is_kept_in_single_precision_with_the_names_of_bodies(squeal):
     system, run, _ = squeal
     counts = {"slider": system.slider.modes(system.is_held(system.slider)).count, "track": system.track.modes().count}
     assert run[VARIABLE].dtype == np.float32
@@ -73,14 +73,14 @@ def test_only_a_track_of_the_same_modes_is_heard_so(squeal):
     own, other = system.track, replace(system.track, length=1.01 * system.track.length)
     assert st.radiate(run, own, PLACE).attrs["motion"] == "recorded"
     assert st.radiate(run, other, PLACE).attrs["motion"] == "driven again"
-    # The motion of one of two bodies is not that of both.
+    # The recorded motion of one of two bodies is not enough.
     less = run.isel({f"{VARIABLE}_probe": run.modal_motion_body.values == "track"})
     assert recorded_motion(less, system, [system.slider]) is None
     assert st.radiate(less, system, PLACE).attrs["motion"] == "recorded or driven again"
 
 
 @pytest.mark.parametrize("turning", [0.0, 100.0])
-def test_a_disc_moves_as_its_forces_make_it_whether_it_turns_or_not(turning):
+def test_a_disc_moves_as_its_forces_imply_turning_or_not(turning):
     system, plate = struck(turning)
     run = st.simulate(system, 0.03, step=1.0 / 480e3, sample_rate=48e3, probes=motions(plate))
     found, known = recorded_motion(run, system, [plate]), redriven(run, system)
@@ -95,7 +95,7 @@ def test_a_disc_moves_as_its_forces_make_it_whether_it_turns_or_not(turning):
 
 
 def test_vibration_before_a_record_and_at_its_start_is_heard():
-    """That of a record that goes on, beside the same time of one that was not cut; and of a body struck beforehand."""
+    """For a continued record, against the same time of an uncut one; and for a body struck beforehand."""
     scenario = st.load_scenario("squeal", {"duration": "20 ms"})
     track = scenario.system.track
     words = {"probes": motions(track), "sample_rate": 50e3, "step": 5e-6}
@@ -105,7 +105,7 @@ def test_vibration_before_a_record_and_at_its_start_is_heard():
     known, found = (st.radiate(run, track, PLACE).values[-400:, 0] for run in (whole, later))
     again = st.radiate(later.drop_vars(VARIABLE), track, PLACE)
     size = np.abs(known).max()
-    # What the first record sent late is missing only as long as it travels along the track.
+    # Late sound of the first record is missing only for its travel time along the track.
     assert np.abs(found - known)[120:].max() < 0.01 * size
     assert np.abs(again.values[-400:, 0] - known)[120:].max() > 0.1 * size
     assert "continues another" in again.attrs["notes"]
@@ -125,7 +125,7 @@ def test_a_body_in_space_that_starts_in_motion_is_heard():
     assert not st.radiate(run.drop_vars(VARIABLE), system, (0.3, 0.3, 0.5)).values.any()
 
 
-def test_runs_side_by_side_record_it_too():
+def test_runs_side_by_side_also_record_it():
     scenario = st.load_scenario("squeal", {"duration": "2 ms"})
     system = scenario.system
     probes = motions(system.track)

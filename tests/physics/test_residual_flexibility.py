@@ -1,4 +1,4 @@
-"""Residual shapes: what modes beyond a cutoff yield statically, against the whole body, a twin and closed forms."""
+"""Residual shapes: static flexibility of modes beyond a cutoff, against the whole body, a twin and closed forms."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def test_bars_in_contact_converge_with_the_cube_of_their_modes():
 
 @pytest.mark.parametrize("law", [st.Coulomb(0.3), st.StaticKinetic(0.4, 0.3)])
 def test_equilibrium_is_that_of_the_whole_body(law):
-    """Springs, loads and gravity find the body as soft as it is, too."""
+    """Also for springs, loads and gravity."""
     known = st.sliding_stability(on_feet(law, None)).normal_force.values
     np.testing.assert_allclose(st.sliding_stability(on_feet(law)).normal_force, known, rtol=1e-10)
     plain = st.sliding_stability(on_feet(law, residual_flexibility=False)).normal_force.values
@@ -101,7 +101,7 @@ def test_equilibrium_is_that_of_the_whole_body(law):
 
 
 def test_mode_coupling_is_that_of_the_whole_body():
-    """Without the modes left out another mode grows."""
+    """Without residual shapes another mode grows."""
     found = {}
     for name, system in {
         "whole": on_feet(st.Coulomb(0.9), None, belt=0.8),
@@ -136,7 +136,7 @@ def test_growth_in_time_is_that_of_linear_theory(law, belt, scheme):
 
 
 def test_a_massless_contact_counts_where_friction_does_not_depend_on_speed():
-    """Only mass holds a slip against friction that falls: tangential rows of such contacts see modes alone."""
+    """Only mass resists falling friction: tangential rows of such contacts act on modes alone."""
     theory = st.sliding_stability(on_feet(st.ExponentialWeakening(0.4, 0.2, 0.5)))
     highest = 2.0 * pi * theory.frequency.values.max()
     assert theory.growth_rate.values.max() < 0.1 * highest
@@ -180,7 +180,7 @@ class Twin:
         return np.array(forces), np.array(gaps)
 
 
-def test_the_march_is_the_one_written_out():
+def test_the_march_equals_the_one_written_out():
     """Landings and departures of a foot on a fast belt, a load at another point; forces and gap at every step."""
     step, count, friction, cutoff = 2e-6, 6000, 0.3, 1500.0
     body = lattice(cutoff, translation=None)
@@ -222,7 +222,7 @@ def test_lost_energy_is_that_of_the_force_on_the_flexibility():
 
 
 @pytest.mark.parametrize("step", [2e-6, 8e-6])
-def test_yielding_does_not_damp(step):
+def test_residual_flexibility_does_not_damp(step):
     """A flexibility that lagged a step behind would take 4 % of the growth at the longer step."""
     system = dragged(0.5, 0.002)
     probe = st.Displacement(system.slider.at("top"), "z")
@@ -248,7 +248,7 @@ def test_a_body_keeps_its_choice_in_files_and_scenarios(tmp_path):
         np.testing.assert_array_equal(st.simulate(again, 1e-4, probes=[]).normal_force, run.normal_force)
 
 
-def test_a_run_goes_on_as_if_it_had_not_stopped():
+def test_a_continued_run_equals_an_uninterrupted_one():
     system = on_feet(st.Coulomb(0.9), belt=0.8)
     whole = st.simulate(system, 4e-3, probes=[])
     half = st.simulate(system, 2e-3, probes=[])
@@ -256,12 +256,12 @@ def test_a_run_goes_on_as_if_it_had_not_stopped():
     np.testing.assert_array_equal(whole.normal_force[half.time.size :], rest.normal_force)
 
 
-def test_the_choice_is_a_truth_value():
+def test_residual_flexibility_must_be_a_boolean():
     with pytest.raises(st.ArgumentError, match="residual_flexibility must be a bool"):
         lattice(residual_flexibility=1.0)
 
 
-def test_what_moves_a_body_leaves_residual_shapes_at_rest():
+def test_initial_motion_leaves_residual_shapes_at_rest():
     """They follow forces, neither velocities nor displacements at the start."""
     body = lattice()
     massless = body.modes().massless

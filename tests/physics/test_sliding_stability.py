@@ -1,4 +1,4 @@
-"""Sliding stability against closed forms, against growth seen in time, and verdicts on the equilibrium."""
+"""Sliding stability against closed forms, against growth in time, and kinds of equilibrium."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def dragged(friction: float, at: float = 0.31484):
 
 
 def test_growth_of_the_moving_contact_of_two_beams():
-    """It settles in sliding at 0.6; at 1.0 it grows from what is left of that, until it first stops sliding."""
+    """It settles in sliding at 0.6; at 1.0 it grows from the remaining vibration, until it first stops sliding."""
     settled = st.simulate(dragged(0.6), 0.5, step=2e-6)
     run = st.simulate(dragged(1.0), 0.006, step=2e-6, start=settled)
     slid = int(np.argmax(run.status.values != SLIDING))
@@ -95,13 +95,13 @@ def test_growth_of_the_moving_contact_of_two_beams():
     assert known.real == pytest.approx(510.88, rel=1e-3)
     assert seen.real == pytest.approx(known.real, rel=0.02)
     assert seen.imag == pytest.approx(known.imag, rel=1e-3)
-    # Negative control: where the run began it grows by another rate.
+    # Negative control: at the start of the run the growth rate is different.
     elsewhere = float(st.sliding_stability(dragged(1.0)).growth_rate.max())
     assert abs(elsewhere / known.real - 1.0) > 0.05
 
 
 def swings(law, stiffness: float, speed: float, skipped: float = 0.0, kick: float = 1e-5) -> tuple[complex, complex]:
-    """Return the exponent of 1 kg swinging in sliding on a belt, and the one seen in time about the equilibrium."""
+    """Return the exponent of 1 kg vibrating in sliding on a belt, and that in time about the equilibrium."""
     rest = float(law.coefficient_at(speed)) * WEIGHT / stiffness
     slider = Slider(1.0, stiffness, WEIGHT, law, rest * (1.0 + kick), belt=speed)
     found = values(st.sliding_stability(slider.system()))
@@ -109,7 +109,7 @@ def swings(law, stiffness: float, speed: float, skipped: float = 0.0, kick: floa
     period = 2.0 * pi / abs(known.imag)
     step = period / 4000.0
     run = slider.run(skipped + 3.0 * period, step, st.ExactModal())
-    # Under a law with a state slow sliding counts as sticking.
+    # Under a law with a state, slow sliding counts as sticking.
     assert law.state_units or bool((run.status == SLIDING).all())
     motion = run.displacement.values.reshape(run.time.size, 1)
     return complex(known), complex(exponents(motion[int(skipped / step) + 100 :: 200], 200 * step, 1.0, 1)[0])
@@ -157,7 +157,7 @@ def stribeck_growth(velocity: float) -> float:
 @pytest.mark.parametrize("status", [None, "sliding"])
 @pytest.mark.parametrize("velocity", [0.5, -0.5, 0.2])
 def test_a_given_slip_velocity_counts_where_nothing_prescribes_it(velocity, status):
-    """The law falls with speed whatever moves the contact; the sign of the velocity is the sense of friction."""
+    """The law falls with speed for any cause of motion; the sign of the velocity is the sense of friction."""
     found = st.sliding_stability(on_floors(STRIBECK), velocity=velocity, status=status)
     assert found.attrs["equilibrium"] == "sliding"
     assert float(found.growth_rate.max()) == pytest.approx(stribeck_growth(velocity), rel=1e-9)
@@ -355,7 +355,7 @@ def test_painleves_rod_jams_at_its_limit(degrees):
 
 
 def test_weight_alone_is_held_and_a_push_beyond_friction_slides():
-    """A guided rod under its weight: it slides from mu m g on, at the rate of what is left."""
+    """A guided rod under its weight: it slides above mu m g, with the acceleration of the excess force."""
     rod = st.FiniteElementBeam(STEEL, SQUARE, 0.15, angle=0.2, elements=6)
     weight = rod.total_mass * 9.80665
 

@@ -33,8 +33,8 @@ def elastic(body):
 def test_simply_supported_plate_of_nafems():
     """FV52 on 4 x 4 x 1 hexahedra of 20 nodes: the ratios to the closed forms that OptiStruct publishes, to the digit.
 
-    Lines do not hold a solid: the bending modes fall without end as the mesh is refined, so that the mesh belongs to
-    the case.
+    Line supports do not hold a solid: the bending modes fall without limit as the mesh is refined, so that the mesh is
+    part of the case.
     """
     mesh = st.SolidMesh.block((10.0, 10.0, 1.0), (4, 4, 1))
     x, y, z = mesh.nodes.T
@@ -184,7 +184,7 @@ def patch(kind):
 
 
 def of_27_nodes(mesh):
-    """Return a mesh of straight hexahedra of 20 nodes with nodes in the middle of faces and elements, too."""
+    """Return a mesh of straight hexahedra of 20 nodes and further nodes in the middle of faces and elements."""
     kind = mesh.element_kind
     faces = mesh.elements[:, np.array(kind.faces)]
     keys, number = np.unique(np.sort(faces.reshape(-1, 4), axis=1), axis=0, return_inverse=True)
@@ -236,7 +236,7 @@ def test_static_displacements_at_points_are_those_of_a_direct_solve(fixed):
     traces = np.vstack([body.trace(point) for point in CORNERS])[:, rigid:]
     found = traces / modes.stiffness[rigid:] @ traces.T
     np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected).max())
-    # Under its own weight, too.
+    # Also under its own weight.
     weight = np.tile(np.eye(3), (free.size // 3, 1))[free]
     sag = rows[:, free] @ elastic_shapes @ (elastic_shapes.T @ (mass @ weight))
     if not rigid:

@@ -131,8 +131,8 @@ def _on_feet(body, law, belt, rotation, directions) -> st.System:
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.law)
 @pytest.mark.parametrize("rotation", [np.eye(3), TURNED], ids=["upright", "turned"])
-def test_a_system_of_the_plane_moves_as_there_however_it_is_turned(law, rotation):
-    """Landings, sticks and reversals; what rounding makes grows through them."""
+def test_a_planar_system_moves_equally_under_any_rotation(law, rotation):
+    """Landings, sticks and reversals, which amplify rounding."""
     words = {"step": 5e-6, "sample_rate": 2e5, "probes": []}
     flat, space = (st.simulate(system, 0.01, **words) for system in (in_the_plane(law), turned(law, rotation)))
     size = float(flat.normal_force.max())
@@ -178,7 +178,7 @@ def test_linear_theory_is_that_of_the_plane(friction):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_a_particle_on_a_slope_ends_straight_downhill_at_half_its_speed(scheme):
-    """Speed and speed downhill lose and win alike: their sum stays the speed at the start."""
+    """Total speed falls as downhill speed rises: their sum stays the initial speed."""
     errors = []
     for step in (4e-3, 2e-3, 1e-3):
         run = st.simulate(thrown_on_a_slope(), 10.0, step=step, sample_rate=25.0, scheme=scheme, probes=[])
@@ -192,7 +192,7 @@ def test_a_particle_on_a_slope_ends_straight_downhill_at_half_its_speed(scheme):
 
 
 @pytest.mark.parametrize("degrees", [0.0, 30.0, 135.0, 290.0])
-def test_a_mass_is_held_in_all_directions_alike(degrees):
+def test_a_mass_is_held_equally_in_all_directions(degrees):
     """A force that rises from 0 to 2 N in 1 s along any direction moves 1 kg off at mu N = 1 N, after 0.5 s."""
     mass = st.RigidBody(1.0)
     contact = st.PointContact(mass.centre, st.RigidTrack(), friction=st.Coulomb(0.1))
@@ -206,8 +206,8 @@ def test_a_mass_is_held_in_all_directions_alike(degrees):
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.law)
-def test_a_mass_is_stopped_in_all_directions_alike(law):
-    """Thrown along either tangent or between them it slides as far, from the first step on."""
+def test_a_mass_is_stopped_equally_in_all_directions(law):
+    """Thrown along either tangent or between them it slides equally far, from the first step on."""
     found = []
     for degrees in (0.0, 90.0, 215.0):
         mass, way = st.RigidBody(1.0), radians(degrees)
@@ -230,7 +230,7 @@ def test_friction_damps_motion_across_the_slip(direction):
     np.testing.assert_allclose(found.slip_velocity, 10.0 * np.array(direction), rtol=1e-12)
 
 
-def test_motion_across_the_slip_decays_so_in_time():
+def test_motion_across_the_slip_decays_in_time_as_in_theory():
     """A swing across of 1 mm/s against the 10 m/s of the belt, over 30 periods."""
     system, own = swinging(across=1e-3), sqrt(STIFFNESS / MASS)
     probe, step = st.Displacement(system.slider.centre, "z"), 2.0 * pi / own / 400.0
@@ -344,7 +344,7 @@ def dragged(friction: float, damping: float) -> st.System:
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_growth_in_time_is_that_of_linear_theory(scheme):
-    """Mode coupling through friction in four directions, with what friction damps across each."""
+    """Mode coupling through friction in four directions, with the damping of friction across each."""
     system = dragged(0.5, 0.002)
     probe = st.Displacement(system.slider.at("top"), "z")
     known, seen, _ = growth(system, probe, 2e-6, 4e-3, 20, scheme, amplitude=1e-10)
@@ -377,7 +377,7 @@ def test_a_start_in_sliding_equilibrium_stays_there(scheme):
 def test_a_coin_that_slides_and_spins_stops_doing_both_at_once():
     """At v / (R w) = 0.652998 the ratio stays; there F = 0.616031 mu N and T = 0.471694 mu N R (Farkas et al. 2003).
 
-    Forty-eight points, three motions: where it stops the forces of sticking are not determined, and are found.
+    Forty-eight points, three motions: when it stops, the sticking forces are not unique, and a solution is found.
     """
     known, spin = 0.652998, 20.0
     system, places = coin(4, 12, known * RADIUS * spin, spin)
@@ -403,7 +403,7 @@ def test_a_coin_that_slides_and_spins_stops_doing_both_at_once():
 
 
 def test_a_rigid_body_turns_about_its_principal_axes():
-    """Velocity of a point of a body that spins: v + w x r, whatever its inertia; energy is that of the motion."""
+    """Velocity of a point of a body that spins: v + w x r, for any inertia; kinetic energy is that of the motion."""
     random = np.random.default_rng(7)
     half = random.standard_normal((3, 3))
     inertia = half @ half.T + 3.0 * np.eye(3)
@@ -479,7 +479,7 @@ def rubbing(space: bool) -> st.System:
 
 @pytest.mark.parametrize("space", [False, True])
 def test_a_surface_that_moves_drags_both_bodies_apart(space):
-    """The upper goes with it by mu N / k, the lower the other way; N is 10 N less what the upper's spring carries."""
+    """The upper moves with it by mu N / k, the lower the other way; N is 10 N less the force of the upper's spring."""
     system = rubbing(space)
     way = np.array([0.6, -0.8]) if space else np.array([1.0])
     theory = st.sliding_stability(system)
@@ -495,13 +495,13 @@ def test_a_surface_that_moves_drags_both_bodies_apart(space):
     still = st.System(system.contact, [*system.drives, st.InitialEquilibrium()], system.connections)
     run = st.simulate(still, 0.5, step=1e-3, probes=[])
     np.testing.assert_allclose(run.normal_force, normal, rtol=1e-9)
-    # The drive gives what friction takes: 1 m/s against mu N.
+    # The drive supplies the loss of friction: 1 m/s against mu N.
     assert float(run.drive_work[-1]) == pytest.approx(0.3 * normal * 0.5, rel=1e-2)
     assert float(run.friction_loss[-1]) == pytest.approx(0.3 * normal * 0.5, rel=1e-9)
     assert st.load_scenario(run).system == still
 
 
-def test_a_body_given_by_its_modes_moves_as_the_one_they_are_of():
+def test_a_body_given_by_its_modes_moves_like_the_original():
     """With residual shapes, in both schemes, to round-off."""
     system = standing()
     whole = system.slider
@@ -543,7 +543,7 @@ def test_an_ensemble_of_a_system_in_space_starts_from_small_changes():
         assert 0.0 < float(np.ptp(found.force.values)) < 0.5 * float(found.force_mean)
 
 
-def test_a_run_in_space_goes_on_and_runs_again(tmp_path):
+def test_a_run_in_space_continues_and_runs_again(tmp_path):
     system = standing()
     probes = [st.Displacement(system.slider.at("top"), "z"), st.Velocity(system.slider.at("foot 1"), "z")]
     names = ("normal_force", "tangential_force", "contact_position")
@@ -580,7 +580,7 @@ BAD = {
     "centre": (lambda: st.RigidBody(1.0, points={"centre": (1.0, 2.0, 3.0)}), "points must have names that are text"),
     "z force": (lambda: st.Force(FLAT.centre, z=1.0), "z must be 0 on a body in the plane, got 1"),
     "z velocity": (lambda: st.InitialVelocity(FLAT, z=1.0), "z must be 0 on a body in the plane, got 1"),
-    "z probe": (lambda: st.Displacement(FLAT.centre, "z"), "direction must be another than z on a body in the plane"),
+    "z probe": (lambda: st.Displacement(FLAT.centre, "z"), "direction must not be z on a body in the plane"),
     "normal in the plane": (
         lambda: st.PointContact(FLAT.centre, st.RigidTrack(), normal=(0.0, 1.0, 0.0)),
         "normal must be left out between bodies in the plane",
@@ -630,7 +630,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_what_does_not_fit_in_space_is_said(name):
+def test_bad_arguments_in_space_are_refused(name):
     make, message = BAD[name]
     with pytest.raises(st.ArgumentError, match=message) as refused:
         make()

@@ -12,7 +12,7 @@ from stridula import analysis
 
 LENGTH, TENSION = 0.33, 60.0
 LIGHT = st.Material(1e9, 1000.0)
-# Of no stiffness to speak of, as stiff as stretched, and a beam without tension.
+# With negligible stiffness, as stiff as stretched, and a beam without tension.
 IDEAL = st.ModalBeam(LIGHT, st.Section(1e-6, 1e-22), LENGTH, bending_modes=200, axial_modes=1, tension=TENSION)
 STIFF = st.ModalBeam(LIGHT, st.Section(1e-6, 1e-9), LENGTH, bending_modes=200, axial_modes=1, tension=TENSION)
 BEAM = st.ModalBeam(LIGHT, st.Section(1e-6, 1e-9), LENGTH, bending_modes=200, axial_modes=1)
@@ -28,7 +28,7 @@ def bowed(string: st.ModalBeam, place: float, force: float = 0.5, drives=(), con
 
 
 def tail(string: st.ModalBeam, place: float) -> float:
-    """Return a bound of the share of a force at a place that the modes left out of the series bring to a support.
+    """Return a bound of the fraction of a force at a place that the modes left out carry to a support.
 
     Abel's: ``(2 / pi) sum of sin(k t) / k`` over k > n is at most ``2 / (pi (n + 1) sin(t / 2))``.
     """
@@ -62,7 +62,7 @@ def test_supports_share_a_constant_force_by_the_lever(string, place):
 
 
 def test_the_series_converges_as_its_bound_says():
-    """Ten times the modes leave no more than a tenth of the bound; and the first modes alone are not enough."""
+    """Ten times the modes reduce the error to a tenth of the bound; the first modes alone are not enough."""
     place, errors = 0.1, []
     for count in (20, 200, 2000):
         string = st.ModalBeam(LIGHT, IDEAL.section, LENGTH, bending_modes=count, axial_modes=1, tension=TENSION)
@@ -89,7 +89,7 @@ def test_a_string_on_a_spring_balances_about_its_end():
 def test_a_thrown_string_pulls_its_supports_by_a_square_wave():
     """Thrown down at V: ``T w'(0)`` is -Z V up to L/c and +Z V up to 2 L/c (d'Alembert), with ``Z = sqrt(T rho S)``.
 
-    In the middle of each the series of odd sines alternates: what is left out is at most the next term, of
+    In the middle of each the series of odd sines alternates: the remainder is at most the next term, of
     ``4 / (pi (n + 1))``. The exact scheme moves free modes exactly, and the stiffness of 3e-9 not at all.
     """
     line = LIGHT.density * 1e-6
@@ -105,7 +105,7 @@ def test_a_thrown_string_pulls_its_supports_by_a_square_wave():
     np.testing.assert_allclose(force[[249, 749]], [[-1, -1], [1, 1]], atol=allowed + 1e-6)
 
 
-def test_support_forces_go_on_in_a_run_that_is_continued():
+def test_support_forces_continue_in_a_continued_run():
     probes = [st.SupportForce(IDEAL, end) for end in ENDS]
     system = bowed(IDEAL, 0.05, velocity=0.1)
     words = {"probes": probes, "sample_rate": 5e4}
@@ -149,9 +149,9 @@ def test_the_violin_settles_in_helmholtz_motion(violin):
     assert int(run.unsolved_steps.sum()) == 0
     found = analysis.bowed_motion(run, 196.0)
     assert found.motion == "Helmholtz"
-    # A slip more or less at the end.
+    # One slip more or fewer at the end.
     assert found.slips_per_period == pytest.approx(1.0, abs=1.0 / 98.0)
-    # Flat by no more than a tenth of a semitone, for the bow holds the corner back a little.
+    # Flat by no more than a tenth of a semitone, as the bow delays the corner a little.
     assert 0.994 * 196.0 < found.frequency < 196.0
     assert 0.12 < found.slip_share < 0.12 + 8.0 / 325.0
     late = run.sel(time=slice(0.5, None))

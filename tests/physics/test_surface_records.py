@@ -1,4 +1,4 @@
-"""Surfaces recorded in short: what is left is what all points come to, and what is heard of them."""
+"""Surfaces in short records: resultants and sound equal those of all points."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ import pytest
 import stridula as st
 from stridula import analysis, plot
 from stridula.acoustics.redriven import redriven
-from stridula.contact.resultants import RESULTANTS
 from stridula.integration import together
 from stridula.plot.surfaces import QUANTITIES
 from stridula.records.by_point import by_point, counted
 from stridula.records.by_surface import by_surface
+from stridula.records.resultants import RESULTANTS
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
 RATE, MAPS = 2e4, 2e3
@@ -51,13 +51,13 @@ def pair():
 
 @pytest.fixture(scope="module")
 def both(pair):
-    """The same run with all points and in short."""
+    """The same run with all points and as a short record."""
     return [st.simulate(pair, 8.2e-3, surface_rate=rate, **WORDS) for rate in ("all", MAPS)]
 
 
 @pytest.fixture(scope="module")
 def usual(pair):
-    """The run as it is recorded where nobody says otherwise."""
+    """The run as recorded by default."""
     return st.simulate(pair, 8.2e-3, **WORDS)
 
 
@@ -95,7 +95,7 @@ def test_maps_are_means_over_their_interval(both):
     assert whole.sizes["time"] % every, "an interval that is not whole should be left out"
 
 
-def test_regime_figures_and_files_know_it(both, tmp_path):
+def test_regimes_figures_and_files_accept_it(both, tmp_path):
     _, short = both
     st.save(short, tmp_path / "short.nc")
     loaded = st.load(tmp_path / "short.nc")
@@ -107,7 +107,7 @@ def test_regime_figures_and_files_know_it(both, tmp_path):
     assert float(st.compare(short, short).attrs["within_tolerance"]) == 1
 
 
-def test_the_usual_record_goes_on():
+def test_the_usual_record_continues():
     given = system()
     run, first = (st.simulate(given, duration, **WORDS) for duration in (4e-3, 2e-3))
     rest = st.simulate(given, 2e-3, start=first, **WORDS)
@@ -115,7 +115,7 @@ def test_the_usual_record_goes_on():
         np.testing.assert_array_equal(np.concatenate([first[name], rest[name]]), run[name], err_msg=name)
 
 
-def test_it_goes_on_and_runs_again(both):
+def test_it_continues_and_runs_again(both):
     whole, short = both
     given = system()
     words = WORDS | {"surface_rate": MAPS}
@@ -131,7 +131,7 @@ def test_it_goes_on_and_runs_again(both):
     again = scenario.simulate()
     np.testing.assert_array_equal(again.normal_force, run.normal_force)
     np.testing.assert_array_equal(again.map_status, run.map_status)
-    # The system of a record has no mesh, and knows the areas and places of its points.
+    # The system of a record has no mesh, but the areas and places of its points.
     np.testing.assert_allclose(again.surface_moment, run.surface_moment, rtol=1e-12, atol=1e-15)
     (face,) = scenario.system.faces
     assert analysis.surface(run, face).identical(analysis.surface(run, SOLE))
@@ -139,7 +139,7 @@ def test_it_goes_on_and_runs_again(both):
 
 
 @pytest.mark.parametrize("rate", [MAPS, None], ids=["maps", "usual"])
-def test_what_an_interrupt_leaves_is_whole(both, monkeypatch, rate):
+def test_an_interrupted_record_is_complete(both, monkeypatch, rate):
     """After some chunks, and before the first."""
     whole, _ = both
     every = round(RATE / (rate or 1e3))
@@ -254,7 +254,7 @@ def test_many_runs_record_surfaces_as_one_does(both, usual, pair):
         assert [float(measured[name][0]) for name in kept] == known
 
 
-def test_what_is_refused():
+def test_bad_arguments_are_refused():
     mass = st.RigidBody(1.0)
     alone = st.System(st.PointContact(mass.centre, st.RigidTrack()), [st.Gravity()])
     for given, rate, words in (

@@ -1,4 +1,4 @@
-"""Faces in contact: the patch test, pads on discs that turn, planes, and what does not fit."""
+"""Faces in contact: the patch test, pads on turning discs, planes, and refusals."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def test_a_face_finds_the_disc_before_it():
     assert face.areas.sum() == pytest.approx(sector, rel=1e-4)
 
 
-def test_a_pad_stays_in_equilibrium_and_says_its_resultants():
+def test_a_pad_stays_in_equilibrium_and_has_its_resultants():
     system, face = brake(0.05)
     theory = st.sliding_stability(system)
     assert theory.attrs["equilibrium"] == "sliding"
@@ -110,7 +110,7 @@ def test_a_pad_stays_in_equilibrium_and_says_its_resultants():
     loads = sum(drive.push[2][1] for drive in system.drives)
     force = found.force.values[-1]
     assert 0.9 * -loads < force[1] < -loads
-    # Friction goes round the axis along the face.
+    # Friction acts round the axis along the face.
     assert np.hypot(force[0], force[2]) == pytest.approx(0.05 * force[1] * np.sin(0.35) / 0.35, rel=0.01)
     np.testing.assert_allclose(found.pressure.values @ face.areas, run.normal_force.sum("contact"), rtol=1e-12)
     middle = face.areas @ face.points.place / face.areas.sum()
@@ -135,7 +135,7 @@ def test_growth_in_time_is_that_of_linear_theory():
 
 
 def test_a_part_of_a_face_may_lift_off_and_the_run_runs_again(tmp_path):
-    """Under strong friction the trailing edge is open in equilibrium, which is one of sliding all the same."""
+    """Under strong friction the trailing edge is open in equilibrium, which still is one of sliding."""
     system, face = brake(0.6, stiffness=1e13)
     theory = st.sliding_stability(system)
     assert theory.attrs["equilibrium"] == "sliding"
@@ -148,7 +148,7 @@ def test_a_part_of_a_face_may_lift_off_and_the_run_runs_again(tmp_path):
 
 @pytest.mark.parametrize("friction", [0.2, 0.4, 0.6])
 def test_a_rigid_face_that_bounces_finds_its_forces(friction):
-    """The condition of its compliance is 2e6: sweeps alone creep, and which points are open changes at every step."""
+    """The condition of its compliance is 2e6: sweeps converge slowly, and the open points change at every step."""
     system, _ = brake(friction, stiffness=None)
     run = st.simulate(system, 1e-3, probes=[])
     assert int(run.unsolved_steps.sum()) == 0
@@ -157,7 +157,7 @@ def test_a_rigid_face_that_bounces_finds_its_forces(friction):
     assert np.abs(run.ledger_residual).max() < 1e-10 * run.drive_work.max()
 
 
-def test_a_rigid_face_whose_forces_are_not_found_says_what_helps():
+def test_a_rigid_face_without_solution_reports_a_remedy():
     system, _ = brake(0.4, stiffness=None)
     with pytest.raises(st.Diverged, match="a rigid surface of so many points needs a contact stiffness"):
         st.simulate(system, 1e-3, probes=[], contact_solve=st.GaussSeidel(sweeps=2))
@@ -184,7 +184,7 @@ BAD = {
     "track": (lambda: st.SurfaceContact(flipped()[0], "top", 3.0), "track must be"),
     "beside": (
         lambda: st.SurfaceContact(flipped()[0], "top", flipped()[1], "left"),
-        "track_face must lie before the whole face",
+        "track_face must lie opposite the whole face",
     ),
     "overlap": (
         lambda: st.SurfaceContact(flipped()[0], "top", flipped()[1], "bottom", gap=-0.02),
@@ -194,7 +194,7 @@ BAD = {
         lambda: st.SurfaceContact(
             st.SolidBody(moved(flipped()[0].mesh, 0.13, 0.006, 0.0), LINING), "bottom", brake(0.1)[0].track
         ),
-        "track must lie before the whole face",
+        "track must lie opposite the whole face",
     ),
     "overlay": (
         lambda: st.SurfaceContact(flipped()[0], "top", st.RigidTrack(), overlay=True),
@@ -205,7 +205,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_what_does_not_fit_is_said(name):
+def test_bad_arguments_are_refused(name):
     make, words = BAD[name]
     with pytest.raises(ValueError, match=words):
         make()

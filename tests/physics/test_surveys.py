@@ -1,4 +1,4 @@
-"""Squeal surveys: modes that grow, what becomes of each in time, and how a survey is kept and resumed."""
+"""Squeal surveys: growing modes, their fates in time, and saving and resuming of surveys."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from stridula.studies.fates import Options, Runs
 from stridula.studies.survey_task import without_start
 from stridula.studies.swings import growth_in_time
 
-from .fluttering import MODEL, flutter
+from .mode_coupling import MODEL, flutter
 
 SLIDING = st.InitialEquilibrium(status="sliding")
 
@@ -40,7 +40,7 @@ def test_a_mode_grows_in_time_as_its_eigenvalue_says_and_lives_on():
     assert set(found.fate.values) == {"lives"}
     assert set(found.regime.values) == {"squeal"}
     assert (found.reached * found.steady == 1.0).all()
-    # Its tone is below, for the contact opens, and the next ones are multiples of it.
+    # Its tone is lower, as the contact opens, and the next ones are multiples of it.
     strongest = found.tone_frequency.isel(tone=0)
     assert ((strongest < found.frequency) & (strongest > 0.95 * found.frequency)).all()
     np.testing.assert_allclose(
@@ -78,7 +78,7 @@ def test_a_survey_without_modes_can_be_kept():
         (0.9, 1.0, {"stops": 0.05}, "dies"),
     ],
 )
-def test_what_does_not_vibrate_at_the_end_is_told(friction, longest, options, fate):
+def test_runs_without_vibration_at_the_end_are_reported(friction, longest, options, fate):
     found = st.squeal_survey(flutter, {"friction": [friction]}, longest=longest, overrides=options).squeeze()
     assert found.fate.item() == fate
     assert float(found.duration) <= longest * 1.001
@@ -87,7 +87,7 @@ def test_what_does_not_vibrate_at_the_end_is_told(friction, longest, options, fa
         assert np.isnan(found.tone_frequency).all()
 
 
-def test_a_run_that_leaves_its_track_is_told():
+def test_a_run_that_leaves_its_track_is_reported():
     found = st.squeal_survey("weak-pressure", [{"friction": 0.9}], overrides={"contact.at": 1.6285}).squeeze()
     assert found.fate.item() == "off the track"
 
@@ -102,7 +102,7 @@ def runs_of(system: st.System, amplitude: float) -> Runs:
 @pytest.mark.parametrize("speed", [1.0, 1e-4])
 @pytest.mark.parametrize(("share", "changes"), [(0.9, False), (1.1, True)])
 def test_a_contact_opens_or_stops_where_the_reach_of_a_mode_ends(speed, share, changes):
-    """Fast belts open it, slow ones stop it. Within a period the mode grows by little, which is taken off."""
+    """Fast belts open it, slow ones stop it. The small growth of the mode within a period is subtracted."""
     system = flutter(0.8, speed)
     runs = runs_of(system, 1e-3)
     (number,) = runs.rest.reach
@@ -123,8 +123,8 @@ def test_growth_and_limit_cycle_do_not_depend_on_how_small_the_start_is():
     assert float(small.duration) > float(large.duration)
 
 
-def test_growth_is_not_told_where_one_mode_is_not_all_there_is():
-    """Negative control: the run of another system has no part of this mode."""
+def test_growth_is_not_given_where_several_modes_contribute():
+    """Negative control: the run of another system does not contain this mode."""
     runs, others = (runs_of(flutter(friction), 1e-3) for friction in (0.8, 1.2))
     (number,) = runs.rest.reach
     run = runs.of(number)
@@ -169,7 +169,7 @@ def complete(path, **options) -> bytes:
     return Path(path).read_bytes()
 
 
-def test_a_survey_that_was_stopped_ends_in_the_same_bytes_whatever_the_workers(monkeypatch):
+def test_a_stopped_survey_ends_in_the_same_bytes_for_any_workers(monkeypatch):
     one = complete("one.nc", workers=1)
     assert complete("two.nc", workers=2) == one
 
@@ -198,7 +198,7 @@ KILLED = """
 import os, signal, sys
 sys.path[:0] = {paths!r}
 import stridula as st
-from physics.fluttering import flutter
+from physics.mode_coupling import flutter
 
 def kill(progress):
     if progress.done == 2:
@@ -211,7 +211,7 @@ st.squeal_survey(flutter, points, out="killed.nc", duration="20 ms", workers=1, 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="nothing is killed so here")
 def test_a_survey_that_was_killed_is_resumed():
-    assert flutter.__module__ == "physics.fluttering"
+    assert flutter.__module__ == "physics.mode_coupling"
     paths = [str(Path(file).resolve().parents[1]) for file in (__file__, st.__file__)]
     code = KILLED.format(paths=paths)
     stopped = subprocess.run([sys.executable, "-c", code], check=False)

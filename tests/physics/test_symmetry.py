@@ -64,7 +64,7 @@ def test_mirror_image(name, scheme):
 
 
 def test_mirror_harness_rejects_half_a_mirror():
-    """Negative control: the slider turned round but the force left as it was."""
+    """Negative control: the slider mirrored but not the force."""
     system = CASES["squeal"]()
     half = mirrored(system)
     half = replace(half, drives=[replace(half.drives[0], transverse=-half.drives[0].transverse)])
@@ -88,11 +88,11 @@ def test_galileo_frictionless(scheme, velocity):
 
 
 def reaction_against_constraint(velocity, factor=1.0):
-    """Largest difference of the normal force between a dragged slider and a thrown one that feels the same reaction.
+    """Largest difference of the normal force between a dragged slider and a thrown one under the same reaction.
 
     Undamped slider with all its modes and central differences: held or free, its motion solves the same equations
     ``M (u[n+1] - 2 u[n] + u[n-1]) / h² + K u[n] = f[n]``, so that the reaction recorded under the imposed velocity, put
-    on a slider that nothing holds, keeps its root at v t.
+    on a free slider, keeps its root at v t.
     """
     rod = st.FiniteElementBeam(STEEL, STRIP, 0.5, angle=-0.7, elements=4)
     step, steps = 5e-6, 2000

@@ -18,7 +18,7 @@ SLIDING = 2
 
 
 def rubbed(turning: float, friction=0.3, mass: float = 0.2, stiffness: float = 1e6, held: str = "xy", **words):
-    """A mass on springs, pressed onto the face of a disc that turns."""
+    """A mass on springs, pressed onto the face of a turning disc."""
     plate = disc(turning, **words)
     pad = st.RigidBody(mass, points={"tip": (0.0, 0.0, 0.0)}, name="pad")
     law = friction if isinstance(friction, st.contact.FrictionLaw) else st.Coulomb(friction)
@@ -36,14 +36,14 @@ def test_waves_of_a_ring_lag_as_bryan_found():
     for order, drag in zip(turning.order[1:], turning.drag[1:], strict=True):
         # The hoop is not thin against waves of high order.
         assert drag / order == pytest.approx((order**2 - 1.0) / (order**2 + 1.0), rel=1e-4 * order)
-    # What moves straight on does not turn at all.
+    # Rigid translation does not turn at all.
     assert turning.order[0] == 1.0
     assert abs(turning.drag[0]) < 1e-9
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_a_struck_disc_is_heard_beating_where_it_was_struck(scheme):
-    """Each pair rings at its frequency, its waves carried round: seen from where it stands, at f ± drag W / 2 pi."""
+    """Each pair rings at its frequency, its waves carried round: in a fixed frame at f ± drag W / 2 pi."""
     turning, step = 100.0, 1e-6
     system, plate = struck(turning)
     probes = [
@@ -56,7 +56,7 @@ def test_a_struck_disc_is_heard_beating_where_it_was_struck(scheme):
     drag = np.zeros(modes.count)
     for pair, by in zip(modes.turning.pairs, modes.turning.drag, strict=True):
         drag[list(pair)] = by * turning
-    # The answer to the blow is the sum of those to its force at every time.
+    # The response to the blow is the sum of those to its force at every time.
     known = np.zeros((3, time.size))
     width, points = 4e-4, (np.arange(400) + 0.5) / 400 * 4e-4
     weights = (1.0 - np.abs(points / (width / 2) - 1.0)) * width / points.size
@@ -69,7 +69,7 @@ def test_a_struck_disc_is_heard_beating_where_it_was_struck(scheme):
     seen = [run.displacement.values.ravel(), run.velocity.values.ravel(), run.acceleration.values.ravel()]
     for found, expected in zip(seen, known, strict=True):
         assert np.abs(found - expected)[after].max() < 0.02 * np.abs(expected[after]).max()
-    # It matters: at rest something else is heard.
+    # Turning matters: a disc at rest sounds different.
     still, _ = struck(0.0)
     rest = st.simulate(still, 0.05, scheme=scheme, step=step, sample_rate=5e4, probes=probes_of(still))
     assert np.abs(rest.displacement.values.ravel() - known[0])[after].max() > 0.5 * np.abs(known[0]).max()
@@ -100,7 +100,7 @@ def test_a_standing_load_sees_waves_that_stand(turning):
 
 
 def test_a_wave_stands_still_where_the_disc_turns_at_its_speed():
-    """There is no other resistance to a standing load than damping: at W = w_n / n it bends the disc without limit."""
+    """At W = w_n / n only damping resists a standing load, which otherwise bends the disc without limit."""
     modes = disc(1.0).modes()
     k = modes.turning.order.index(3.0)
     critical = modes.angular_frequency[modes.turning.pairs[k][0]] / modes.turning.drag[k]
@@ -150,7 +150,7 @@ class InTheMaterial:
         share = 1.0 / (1.0 + 0.5 * h * self.damping)
         free = share * (2.0 * self.q - (1.0 - 0.5 * h * self.damping) * self.before - h**2 * self.stiffness * self.q)
         pad = 2.0 * self.pad - self.pad_before + h**2 / self.mass * (self.load - self.springs * self.pad)
-        # The material under the tip has been elsewhere a step ago.
+        # The material under the tip was elsewhere one step ago.
         passed = self.turned(self.turned(self.q, self.drag * self.turning * n * h), self.order * self.turning * h)
         was = frame[1:] @ (self.rows @ passed)
         gap = frame[0] @ pad - rows[0] @ free
@@ -170,7 +170,7 @@ class InTheMaterial:
 def test_the_march_is_that_in_the_material():
     turning, friction, step, count = 300.0, 0.3, 4e-6, 250
     system = rubbed(turning, friction=friction, damping=0.01)
-    # Apart at first: then both know the motion before the start.
+    # Apart at first: then the motion before the start is known in both.
     apart = replace(system.contact, gap=1e-9)
     system = replace(system, contact=apart)
     words = {"step": step, "sample_rate": 1.0 / step, "scheme": st.CentralDifference(), "probes": []}
@@ -189,7 +189,7 @@ def test_the_march_is_that_in_the_material():
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_energy_is_kept_and_the_drive_pays(scheme):
+def test_energy_is_conserved_and_the_drive_supplies_the_losses(scheme):
     system = rubbed(200.0, friction=st.Stribeck(0.4, 0.3, 0.5), damping=0.002, residual_at=[(0.14, 0.01)])
     ring_force = st.Force(system.track.at((0.1, 1.0, 0.01)), z=3.0, history=st.Harmonic(700.0))
     system = replace(system, drives=[*system.drives, ring_force])
@@ -197,11 +197,11 @@ def test_energy_is_kept_and_the_drive_pays(scheme):
     terms = ["kinetic_and_elastic", "damping_loss", "drive_work", "contact_work"]
     largest = max(float(np.abs(run[term]).max()) for term in terms)
     assert float(np.abs(run.ledger_residual).max()) < 1e-11 * largest
-    # What friction takes the drive gives: force times the way of the disc.
+    # The drive supplies the loss of friction: force times the travel of the disc.
     assert float(run.friction_loss[-1]) == pytest.approx(float(run.drive_work[-1]), rel=0.05)
 
 
-def test_a_run_goes_on_to_the_last_bit_and_runs_again(tmp_path):
+def test_a_run_continues_to_the_last_bit_and_runs_again(tmp_path):
     system = rubbed(300.0, friction=0.4, damping=0.002)
     probes = [st.Velocity(system.track.at(HERE), "z"), st.Acceleration(system.track.at(HERE), "x")]
     words = {"step": 4e-6, "sample_rate": 5e4, "probes": probes}
@@ -211,7 +211,7 @@ def test_a_run_goes_on_to_the_last_bit_and_runs_again(tmp_path):
     again = scenario.simulate()
     for name in ("normal_force", "tangential_force", "velocity", "acceleration"):
         np.testing.assert_array_equal(again[name], whole[name])
-    # And what is written of a body given by its modes is what was read.
+    # A body given by its modes is written as it was read.
     assert again.attrs["scenario"] == whole.attrs["scenario"]
 
 
@@ -230,8 +230,8 @@ def test_discs_at_rest_march_beside_those_that_turn():
         np.testing.assert_allclose(together[k].normal_force, alone.normal_force, rtol=1e-9)
 
 
-def test_a_disc_that_gathers_speed_ends_as_one_that_always_had_it():
-    """Once what the rise has left has decayed."""
+def test_an_accelerated_disc_ends_like_one_at_constant_speed():
+    """After the transient of the acceleration has decayed."""
     words = {"step": 4e-6, "sample_rate": 1e4, "probes": []}
     rising = rubbed(30.0, friction=0.0, damping=0.05, turning_history=st.Ramp(0.02))
     steady = rubbed(30.0, friction=0.0, damping=0.05)
@@ -297,7 +297,7 @@ BAD = {
             st.PointContact(st.RigidBody(1.0).centre, disc(1.0).at(HERE), normal=(0.0, 0.0, 1.0)),
             connections=[st.Spring(disc(1.0).at(HERE), stiffness=1.0)],
         ),
-        "leave a body that turns",
+        "not act on a body that turns",
     ),
     "fast": (lambda: st.simulate(rubbed(4e4), 1e-3, step=4e-6), "turn by at most 0.5 rad"),
     "number": (lambda: disc(float("nan")), "turning must be"),
@@ -305,7 +305,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_what_does_not_fit_is_said(name):
+def test_bad_arguments_are_refused(name):
     make, words = BAD[name]
     with pytest.raises(ValueError, match=words):
         make()

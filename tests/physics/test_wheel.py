@@ -1,4 +1,4 @@
-"""A railway wheel that squeals: modes, what falling friction feeds, waves as it rolls, growth, limit cycle."""
+"""A railway wheel that squeals: modes, energy from falling friction, waves in rolling, growth, limit cycle."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import stridula as st
 from stridula import analysis
 from stridula.linear.reach import modes_at_rest
 
-from .fluttering import flutter
+from .mode_coupling import flutter
 
 RADIUS, LOAD, CREEP = 0.46, 5e4, 0.1
 STANDING = {"turning": 0.0, "contacts.0.surface_velocity.1": 0.0}
@@ -25,14 +25,14 @@ def wheel(**changes: Any) -> st.System:
 
 
 def axial(body: st.AxisymmetricBody, order: int) -> tuple[float, np.ndarray]:
-    """Frequency of the first pair of an order, and how far its modes move the tread across and along the axis."""
+    """Frequency of the first pair of an order, and displacements of the tread across and along the axis."""
     pair = [int(np.flatnonzero((body.numbers == (order, 0, side)).all(axis=1))[0]) for side in (0, 1)]
     rows = body.trace((RADIUS, -np.pi / 2.0, 0.0))[:, pair]
     return float(body.modes().frequency[pair[0]]), np.abs(rows[1:]).max(axis=1)
 
 
 def near(system: st.System, frequency: float) -> np.ndarray:
-    """Exponents near a frequency that hardly decay, those that grow most first."""
+    """Exponents near a frequency that hardly decay, the fastest growing first."""
     theory = st.sliding_stability(system)
     found = theory.growth_rate.values + 2j * np.pi * theory.frequency.values
     found = found[(np.abs(theory.frequency.values / frequency - 1.0) < 0.02) & (found.real > -4.0)]
@@ -50,10 +50,10 @@ def test_its_rim_has_the_axial_modes_of_wheels_of_its_size():
 
 
 @pytest.mark.parametrize("order", [2, 3, 4, 5])
-def test_falling_friction_feeds_what_the_formula_says(order):
+def test_falling_friction_feeds_the_mode_as_in_the_formula(order):
     """``a = -N mu'`` pushes by ``a Z / (Z - a)`` times the velocity of the rim, Z the impedance of the rail sideways.
 
-    At the same coefficient without a fall there is another growth, by what the load changes.
+    At the same coefficient without a fall the load alone changes the growth.
     """
     system = wheel(**STANDING)
     law = system.contact.friction
@@ -68,8 +68,8 @@ def test_falling_friction_feeds_what_the_formula_says(order):
 
 
 @pytest.mark.parametrize("order", [3, 4, 5])
-def test_rolling_makes_of_a_pair_two_waves_that_share_its_growth(order):
-    """Turning couples the two of a pair by the drag d: ``mean + sqrt(half the difference² - d²)`` of their exponents.
+def test_rolling_splits_a_pair_into_two_waves_that_share_its_growth(order):
+    """Turning couples both modes by the drag d: ``mean + sqrt(half the difference² - d²)`` of their exponents.
 
     Standing, one of them passes the contact with its antinode and grows, the other with its node.
     """
@@ -105,7 +105,7 @@ def test_a_survey_of_creep_has_growth_in_time_and_the_mode_lives():
     assert (np.abs(found.seen_growth_rate.values[:-1] / found.growth_rate.values[1:] - 1.0) > 0.2).all()
 
 
-def test_a_contact_that_hardly_yields_reaches_as_far_as_a_rigid_one():
+def test_a_stiff_contact_has_the_reach_of_a_rigid_one():
     rigid = flutter(0.9)
     stiff = replace(rigid, contact=replace(rigid.contact, stiffness=1e13))
     start = st.InitialEquilibrium(status="sliding")
@@ -115,7 +115,7 @@ def test_a_contact_that_hardly_yields_reaches_as_far_as_a_rigid_one():
 
 
 def test_the_shipped_case_squeals_as_a_wave_against_the_turning():
-    """The rim moves sideways about as fast as it creeps; seen from the rail the wave is slower than in the wheel."""
+    """The rim moves sideways about as fast as it creeps; relative to the rail the wave is slower than in the wheel."""
     case = st.load_scenario("wheel")
     body = case.system.contact.tip.body
     probes = [st.Velocity(body.at((RADIUS, angle, 0.0)), "z") for angle in (-np.pi / 2.0, -np.pi / 4.0)]
@@ -135,7 +135,7 @@ def test_the_shipped_case_squeals_as_a_wave_against_the_turning():
 
 
 def test_growth_that_faster_modes_hide_is_left_out():
-    """Friction's curve starts modes that grow faster than the one on top; what is left agrees with theory."""
+    """Nonlinear friction excites faster growing modes than the one on top; the remaining growth agrees with theory."""
     found = st.squeal_survey("wheel", {LATERAL: [0.2]}, highest=1010.0).squeeze()
     seen = found.seen_growth_rate.values
     assert np.isnan(seen).any()

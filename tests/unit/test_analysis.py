@@ -146,7 +146,7 @@ def test_dominant_frequency_ignores_fewer_than_ten_periods():
 
 @pytest.mark.parametrize("levels", [1, 2, 3, 10, 10**6])
 def test_peaks_are_those_of_scipy(levels):
-    """On few levels most are flat, at the ends and between as well."""
+    """With few levels most peaks are flat, also at the ends."""
     random = np.random.default_rng(2)
     for size in (1, 2, 3, 8, 200):
         values = random.integers(0, levels, size).astype(float)
@@ -255,14 +255,14 @@ def test_tones_in_bursts_are_those_of_the_bursts():
 
 
 def test_a_tone_beside_a_stronger_one_must_stand_out():
-    """One is 30 Hz and another 300 Hz away: bands of 20 Hz tell both apart, those of 100 Hz the second only."""
+    """One is 30 Hz and another 300 Hz away: bands of 20 Hz separate both, those of 100 Hz the second only."""
     lines = ((1000.0, 1.0), (1030.0, 0.5), (1300.0, 0.5))
     signal = record([("sliding", 1.0)], lambda t: sum(a * np.sin(2 * np.pi * f * t) for f, a in lines)).normal_force
     near = [np.count_nonzero(analysis.tones(signal, resolution=width)[0] < 1350.0) for width in (20.0, 100.0)]
     assert near == [3, 2]
 
 
-def test_nothing_has_no_tones_and_bad_numbers_are_refused():
+def test_silence_has_no_tones_and_bad_numbers_are_refused():
     signal = record([("sliding", 0.5)], lambda t: 0.0 * t).normal_force
     for found in (*analysis.tones(signal), *analysis.tones(signal, np.empty((0, 2)))):
         assert found.size == 0

@@ -1,4 +1,4 @@
-"""Bodies, sections and materials: what they say of themselves, and what they refuse."""
+"""Bodies, sections and materials: properties and refused arguments."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def test_a_mass_too_small_for_arithmetic_is_refused(mass):
     assert st.PointMass(1e-100).mass == 1e-100
 
 
-def test_no_mode_left_says_so_when_modes_are_asked_for():
+def test_a_body_without_modes_is_reported_when_modes_are_requested():
     with pytest.raises(ValueError, match="cutoff must leave at least one mode"):
         beam(root_support="clamped", cutoff=1.0).modes()
 
@@ -186,7 +186,7 @@ def test_total_mass_and_points():
     assert track.amplitude == pytest.approx(np.sqrt(2 / track.total_mass))
 
 
-def test_supports_hold_what_they_say():
+def test_supports_hold_their_degrees_of_freedom():
     """The traces at a pinned or clamped end vanish, at a guided or free one they do not."""
     for support, held in (("pinned", True), ("clamped", True), ("guided", False), ("free", False)):
         body = beam(root_support=support, angle=0.4)

@@ -31,7 +31,7 @@ def bowed(*hairs: np.ndarray) -> xr.Dataset:
 
 
 def at(*phases: float, period: float = 1.0, length: float = 0.1) -> np.ndarray:
-    """Return whether it slips, from some phases of a period on, for a share of the string's period."""
+    """Return whether it slips, starting at some phases of a period, for a share of the string's period."""
     since = np.stack([(TIME / period - phase) % 1.0 for phase in phases]) * period
     return (since < length).any(axis=0)
 

@@ -1,4 +1,4 @@
-"""What is kept on disk for other processes: found again as it was, bounded, and never in the way."""
+"""The cache on disk for other processes: exact, bounded, and ignored if it fails."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def place_(monkeypatch, tmp_path):
     return tmp_path / "kept"
 
 
-def test_what_is_kept_is_recalled_to_the_last_bit(place):
+def test_cached_arrays_are_recalled_to_the_last_bit(place):
     assert cache.recall("it") is None
     cache.keep("it", ARRAYS)
     found = cache.recall("it")
@@ -32,7 +32,7 @@ def test_what_is_kept_is_recalled_to_the_last_bit(place):
 
 
 @pytest.mark.parametrize("harm", [lambda text: text[:-7], lambda text: text[:99] + b"?" + text[100:], lambda text: b""])
-def test_a_file_that_is_not_whole_is_not_there(place, harm):
+def test_a_damaged_file_is_ignored(place, harm):
     cache.keep("it", ARRAYS)
     file = place / "it.kept"
     file.write_bytes(harm(file.read_bytes()))
@@ -41,7 +41,7 @@ def test_a_file_that_is_not_whole_is_not_there(place, harm):
     assert cache.recall("it") is not None
 
 
-def test_a_folder_that_cannot_be_made_is_not_in_the_way(monkeypatch, tmp_path):
+def test_a_folder_that_cannot_be_made_is_ignored(monkeypatch, tmp_path):
     (tmp_path / "file").write_text("in the way")
     monkeypatch.setenv(cache.FOLDER, str(tmp_path / "file" / "kept"))
     cache.keep("it", ARRAYS)
@@ -49,7 +49,7 @@ def test_a_folder_that_cannot_be_made_is_not_in_the_way(monkeypatch, tmp_path):
     assert (tmp_path / "file").read_text() == "in the way"
 
 
-def test_a_folder_that_cannot_be_written_is_not_in_the_way(place, monkeypatch):
+def test_a_folder_that_cannot_be_written_is_ignored(place, monkeypatch):
     cache.keep("it", ARRAYS)
 
     def refused(*arguments):
@@ -62,7 +62,7 @@ def test_a_folder_that_cannot_be_written_is_not_in_the_way(place, monkeypatch):
     assert cache.recall("it") is not None
 
 
-def test_what_was_not_asked_for_longest_goes(place, monkeypatch):
+def test_the_least_recently_used_file_is_removed(place, monkeypatch):
     cache.keep("one", ARRAYS)
     size = (place / "one.kept").stat().st_size
     monkeypatch.setattr(cache, "MOST", 2 * size)
@@ -70,7 +70,7 @@ def test_what_was_not_asked_for_longest_goes(place, monkeypatch):
     for age, name in ((200, "one"), (100, "two")):
         before = (place / f"{name}.kept").stat().st_mtime - age
         os.utime(place / f"{name}.kept", (before, before))
-    # Asked for, it is the younger one.
+    # A use makes it the younger one.
     assert cache.recall("one") is not None
     cache.keep("three", ARRAYS)
     assert sorted(path.stem for path in place.iterdir()) == ["one", "three"]
@@ -107,6 +107,6 @@ def test_the_folder_is_the_one_of_the_system(monkeypatch, system, variables, wan
     assert cache.folder() == Path(wanted)
 
 
-def test_names_tell_parts_apart():
+def test_names_distinguish_parts():
     assert cache.key([b"ab", b"c"]) != cache.key([b"a", b"bc"])
     assert cache.key([b"ab", b"c"]) == cache.key([b"ab", b"c"])

@@ -1,4 +1,4 @@
-"""CalculiX itself: what it writes of a block is the body that it solves, and the one that is made of the same mesh."""
+"""CalculiX itself: its matrices of a block give its own frequencies, and those of the body from the same mesh."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def deck(kind, is_held, solver):
 
 
 def solved(folder, kind="hexahedron20", is_held=True):
-    """Let CalculiX write the matrices of a block and, in another job, find its frequencies."""
+    """Make CalculiX write the matrices of a block and, in another job, compute its frequencies."""
     if CCX is None:
         pytest.skip(MISSING)
     for job, solver in (("stored", ", SOLVER=MATRIXSTORAGE"), ("solved", "")):
@@ -52,7 +52,8 @@ def test_frequencies_are_those_that_calculix_finds(kind, tmp_path, monkeypatch):
     assert wanted.size == MODES
     np.testing.assert_allclose(body.modes().frequency[:MODES], wanted, rtol=1e-5)
     if kind != "hexahedron":
-        # Of eight nodes CalculiX takes a mean volume strain; the mass of ten it has from four points, ours is exact.
+        # For eight nodes CalculiX uses a mean volume strain; the mass of ten it integrates at four points, ours is
+        # exact.
         monkeypatch.setattr(solid_elements, "DEGREES", (2, 2, 2) if kind == "tetra10" else solid_elements.DEGREES)
         solid = st.SolidBody.read(tmp_path / "stored.inp", {"steel": STEEL}, fixed=["clamp"], cutoff=60e3)
         np.testing.assert_allclose(solid.modes().frequency[:MODES], wanted, rtol=1e-5)
@@ -81,7 +82,7 @@ def test_points_are_nodes_by_number_or_by_place(tmp_path):
 
 
 def receptance(body, point):
-    """Return how far a point of a body is moved by forces on it."""
+    """Return the displacement of a point of a body under forces on it."""
     modes, trace = body.modes(), body.trace(point)
     return trace / np.where(modes.massless, 1.0, modes.angular_frequency**2) @ trace.T
 

@@ -1,4 +1,4 @@
-"""Calibration: known parameters are found again, equal seeds search alike, and what cannot be aimed at is told."""
+"""Calibration: known parameters are recovered, equal seeds give equal searches, bad targets are reported."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_equal_seeds_search_alike_and_others_do_not():
     assert not np.array_equal(one["best_parameters"], other["best_parameters"])
 
 
-def test_a_search_starts_where_it_is_told_to():
+def test_a_search_starts_at_the_given_set():
     def first_set(spread):
         seen = []
         found = st.calibrate(
@@ -112,7 +112,7 @@ def test_friction_is_found_from_how_far_a_tip_travels():
     assert float(found["sample_interval"]) == 5e-5
 
 
-def test_a_measure_may_be_a_word_and_a_function_of_ones_own():
+def test_a_measure_may_be_a_word_or_a_user_function():
     found = st.calibrate(
         "squeal",
         {"friction": (0.2, 1.8)},
@@ -128,23 +128,23 @@ def test_a_measure_may_be_a_word_and_a_function_of_ones_own():
     assert found["met"].values.tolist() == [True, True]
 
 
-def test_runs_that_fail_count_for_the_worst_and_the_others_go_on():
+def test_runs_that_fail_count_as_the_worst_and_the_others_continue():
     found = st.calibrate(
         "squeal", {"angle": ("60 deg", "120 deg")}, {"travel": (5.0, 6.0)}, population=6, generations=2, duration="2 ms"
     )
     assert float(found["angle"]) < 90.0
     assert np.isfinite(float(found["travel"]))
-    # 5 m in units of half a metre, pressed together.
+    # 5 m in units of half a metre, compressed.
     assert float(found["miss"]) == pytest.approx(7.5, abs=0.01)
     assert not found["met"].values.any()
 
 
-def test_where_nothing_can_be_run_the_reason_is_told():
+def test_the_reason_is_reported_if_nothing_can_be_run():
     with pytest.raises(ValueError, match=r"got 6 that cannot: slider\.angle must be strictly between"):
         st.calibrate("squeal", {"angle": ("95 deg", "100 deg")}, {"travel": (0.0, 1.0)}, population=6, duration="2 ms")
 
 
-def test_a_target_says_how_far_a_measure_is_off():
+def test_a_target_gives_the_miss_of_a_measure():
     between = st.Target(2.0, 4.0)
     assert [between.miss(value) for value in (1.0, 2.0, 3.0, 4.0, 6.0)] == [1.0, 0.0, 0.0, 0.0, 2.0]
     assert st.Target(high=5.0).miss(6.0) == pytest.approx(2.0)
@@ -174,7 +174,10 @@ def call(ranges=None, targets=None, source=valley, **options):
         (call(ranges={"a": 1.0}), "ranges['a'] must be a Range or its two ends"),
         (call(ranges=[1.0]), "ranges must be ranges by key"),
         (call(targets={"far": 1.0}), "targets['far'] must be a Target, its two bounds or a word"),
-        (call(targets={"far": (2.0, 1.0)}), "targets['far']: low and high must be a range with an end"),
+        (
+            call(targets={"far": (2.0, 1.0)}),
+            "targets['far']: low and high must be bounds in order, at least one of them finite",
+        ),
         (call(targets={"far": (1.0, 1.0)}), "targets['far']: scale must be given for a target at one value"),
         (call(targets={"far": (None, 1.0)}), "targets['far']: low must be a number, got None"),
         (
@@ -189,7 +192,7 @@ def call(ranges=None, targets=None, source=valley, **options):
         (call(source=lambda points: []), "source must return the measures of each of 32 points, got []"),
         (call(source=lambda points: [{"far": None, "stiff": 1.0}] * len(points)), "got a NoneType"),
         (call(source=lambda points: [{"far": 1.0, "stiff": 1.0, "length": 1.0}] * len(points)), "got 'length'"),
-        (call(source="nope"), "targets must be of "),
+        (call(source="nope"), "targets must be among "),
         (call(source="squeal", targets={"trvel": (0.0, 1.0)}), "did you mean 'travel'?"),
         (call(source="squeal", targets={"travel": "squeal"}), "target of travel must be bounds, got 'squeal'"),
         (call(source="squeal", targets={"regime": "sqeal"}), "did you mean 'squeal'?"),
@@ -206,7 +209,7 @@ def test_bad_arguments_are_one_line(calibrate, message):
     assert "\n" not in str(error.value)
 
 
-def test_what_an_evaluation_raises_comes_through():
+def test_errors_of_an_evaluation_are_raised():
     with pytest.raises(ZeroDivisionError):
         st.calibrate(lambda points: 1 / 0, RANGES, NEAR)
 

@@ -1,4 +1,4 @@
-"""Cards in notebooks: they are whole pages of HTML, name what one wants to know, draw to scale, and take no time."""
+"""Cards in notebooks: valid HTML, main facts, drawings to scale, no slow computation."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def page(thing) -> Page:
 @pytest.mark.parametrize(
     "thing", [BEAM, ROD, PLATE, DISC, BLOCK, PAIR, LUMP, st.PointMass(1.0)], ids=lambda one: one.kind
 )
-def test_cards_are_whole_and_what_they_draw_is_in_their_box(thing):
+def test_cards_are_complete_and_drawings_stay_in_their_box(thing):
     card = page(thing)
     assert set(card.facts) & {"mass", "modes", "size"}
     for x, y, width, height in card.boxes:
@@ -113,13 +113,13 @@ def test_names_are_text():
 
 def test_a_rod_is_drawn_as_it_leans():
     (low, high) = page(ROD).places
-    # Down on the page is y.
+    # y is downwards on the page.
     assert (high - low) @ [np.cos(ROD.angle), np.sin(ROD.angle)] == pytest.approx(0.0, abs=0.2)
     assert high[0] > low[0]
     assert high[1] < low[1]
 
 
-def test_modes_of_large_bodies_are_left_to_be_found(monkeypatch):
+def test_cards_do_not_compute_modes_of_large_bodies(monkeypatch):
     def search(*given):
         raise AssertionError("looked for modes")
 
@@ -134,7 +134,7 @@ def test_modes_of_large_bodies_are_left_to_be_found(monkeypatch):
     assert page(fresh).facts["mass"] == f"{0.1 * 0.05 * 0.021 * 7800.0:.4g} kg"
 
 
-def test_a_body_of_revolution_says_its_modes_once_they_are_found():
+def test_the_card_of_a_body_of_revolution_lists_computed_modes():
     turned = st.AxisymmetricBody(DISC.profile, STEEL, 2100.0, "inner", axis=(0, 1, 0))
     assert page(turned).facts["modes"] == "found on first use, up to 2.1 kHz"
     assert page(turned).facts["supports"] == "inner held"
@@ -145,8 +145,8 @@ def test_a_body_of_revolution_says_its_modes_once_they_are_found():
     )
 
 
-def test_edges_of_a_block_are_those_that_the_eye_sees():
-    """Of twelve edges nine are seen, cut where elements end; none within a face."""
+def test_only_visible_edges_of_a_block_are_drawn():
+    """Nine of twelve edges are visible, cut at the ends of elements; none lies within a face."""
     surface = BLOCK.drawn_at_rest
     edges = edges_seen(surface.place, surface.polygons, surface.normals)
     # Elements have a node in the middle of each edge.
@@ -225,7 +225,7 @@ def test_a_record_without_samples_has_a_card(run):
 
 
 @pytest.mark.parametrize("wrong", [None, "run.nc", 3.0])
-def test_what_is_no_record_has_no_card(wrong):
+def test_other_datasets_have_no_card(wrong):
     with pytest.raises(ValueError, match="run must be a record of simulate"):
         st.card(wrong)
 

@@ -1,4 +1,4 @@
-"""Limits and lists in messages: what they print obeys what they say, and no list of many names is long."""
+"""Limits and lists in messages: printed limits are valid, and lists of many names are short."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_a_limit_is_rounded_to_its_own_side_and_no_farther(limit, digits):
     assert float(at_most(high, 12)) == high or digits > 11
 
 
-def test_a_refused_argument_tells_its_name_value_and_what_is_allowed():
+def test_a_refused_argument_has_its_name_value_and_allowed_values():
     with pytest.raises(st.ArgumentError, match=r"^young must be above 0, got -1\.0$") as caught:
         st.Material(-1.0, 1.0)
     error = caught.value
@@ -77,7 +77,7 @@ def test_short_numbers_stay_as_they_are():
 
 
 @given(numbers, positive, some.booleans())
-def test_a_range_is_one_that_may_be_used(low, width, ends):
+def test_a_printed_range_may_be_used(low, width, ends):
     high = low + width
     assume(low < high)
     words = rf"from {NUMBER} to {NUMBER}," if ends else rf"strictly between {NUMBER} and {NUMBER},"
@@ -139,7 +139,7 @@ def test_the_cutoff_that_is_printed_leaves_a_mode(length, height):
 
 @settings(deadline=None)
 @given(some.floats(1e-3, 1e3), some.floats(0.0, 0.999))
-def test_what_is_too_short_is_printed_shorter_than_what_it_takes(shortest, share):
+def test_a_too_short_sound_is_printed_below_the_required_length(shortest, share):
     interval = shortest / 1000.0
     sound = xr.DataArray(np.zeros(max(1, int(1000 * share))), dims="time")
     sound = sound.assign_coords(time=interval * np.arange(sound.size), listener=0)
@@ -168,7 +168,7 @@ def test_the_sample_rate_that_is_printed_is_supported(recorded):
 
 
 @given(some.lists(some.text("abc ", min_size=1, max_size=30), max_size=60))
-def test_of_many_words_the_first_few_are_said_and_the_rest_counted(words):
+def test_long_lists_are_shortened_with_a_count(words):
     text = listed(words)
     if not words:
         assert text == "none"
@@ -198,7 +198,7 @@ def test_forty_contacts_do_not_make_a_long_message():
     )
 
 
-def test_lists_of_what_a_record_holds_are_short():
+def test_lists_of_variables_of_a_record_are_short():
     bodies = [st.PointMass(1.0, name=f"tooth {k + 1} of the comb") for k in range(40)]
     contacts = [st.PointContact(body.centre, st.RigidTrack(), name=body.name) for body in bodies]
     run = st.simulate(st.System(contacts, [st.Gravity()]), 1e-3, step=1e-4, sample_rate=1e4, probes=[])
@@ -209,7 +209,7 @@ def test_lists_of_what_a_record_holds_are_short():
             lambda: st.simulate(st.System(contacts), 1e-3, start=stateless),
             "start must be a record of simulate with ",
         ),
-        (lambda: st.compare(run, run.drop_vars([*run.data_vars])), "b must have a variable of a, got none"),
+        (lambda: st.compare(run, run.drop_vars([*run.data_vars])), "b must have a variable in common with a, got none"),
     ):
         with pytest.raises(ValueError) as caught:
             check()

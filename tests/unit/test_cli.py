@@ -1,4 +1,4 @@
-"""The command line: what it prints, what it writes, how it ends."""
+"""The command line: output, files, exit codes."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_a_scenario_and_the_schema_are_written_to_a_file(stridula, tmp_path):
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "cp932", "ascii"])
-def test_texts_do_not_hang_on_the_code_page(encoding):
+def test_texts_do_not_depend_on_the_code_page(encoding):
     surroundings = os.environ | {"PYTHONIOENCODING": encoding}
     printed = {}
     for verb in (("show", "squeal"), ("schema",), ("list",)):
@@ -89,24 +89,24 @@ def test_scenarios_with_a_mark_of_their_encoding_are_read(encoding, tmp_path):
         ({"track.length": 1360.0}, "modes below its cutoff"),
     ],
 )
-def test_values_that_are_hardly_meant_are_named(changes, words):
+def test_doubtful_values_are_named(changes, words):
     assert any(words in line for line in doubts(st.load_scenario("squeal", changes).system))
 
 
-def test_shipped_scenarios_are_beyond_doubt_and_the_card_shows_what_is_not(stridula):
+def test_shipped_scenarios_raise_no_doubts_and_the_card_shows_doubts(stridula):
     assert not any(doubts(st.load_scenario(case.name).system) for case in st.list_scenarios())
     assert "doubtful" not in stridula("run", "squeal", *SHORT)[1]
     out = stridula("run", "squeal", *SHORT, "--set", "density=7.8", "--set", "cutoff=5e3")[1]
     assert "did you mean g/cm3?" in out
 
 
-def test_show_says_what_is_doubtful_beside_the_text(stridula, tmp_path):
+def test_show_reports_doubts_beside_the_text(stridula, tmp_path):
     (tmp_path / "mine.toml").write_text('base = "squeal"\n[track.material]\ndensity = 7.8\n')
     code, out, err = stridula("show", "mine.toml")
     assert (code, tomllib.loads(out)["track"]["material"]["density"]) == (0, 7.8)
     assert err == "stridula: doubtful: track: density of 7.8 kg/m3; did you mean g/cm3?\n"
     assert stridula("show", "mine.toml", "--out", "whole.toml") == (0, "", err)
-    # What cannot run can be shown.
+    # A scenario that cannot run can be shown.
     (tmp_path / "mine.toml").write_text('base = "squeal"\n[track]\nlength = -1\n')
     assert stridula("show", "mine.toml")[::2] == (0, "")
 
@@ -116,7 +116,7 @@ def test_a_run_leaves_garbage_collection_on(stridula):
     assert gc.isenabled()
 
 
-def test_run_writes_record_and_figure_and_says_what_came_of_it(stridula, tmp_path):
+def test_run_writes_record_and_figure_and_reports_the_result(stridula, tmp_path):
     code, out, err = stridula("run", "squeal", *SHORT, "--set", "friction=0.4", "--out", "run.nc", "--plot", "run.png")
     assert (code, err) == (0, "")
     words = (
@@ -246,7 +246,7 @@ def pad(tmp_path):
     (tmp_path / "pad.toml").write_text(PAD)
 
 
-def test_the_card_of_the_violin_says_its_motion(stridula):
+def test_the_card_of_the_violin_has_its_motion(stridula):
     code, out, _ = stridula("run", "violin")
     assert code == 0
     lines = " ".join(out.replace("│", " ").split())
@@ -292,7 +292,7 @@ def test_a_reduced_body_on_two_contacts_runs_exports_and_compares(stridula, tmp_
     ],
 )
 @pytest.mark.usefixtures("pad")
-def test_what_is_wrong_with_bodies_and_contacts_is_one_line(stridula, change, message):
+def test_errors_of_bodies_and_contacts_are_one_line(stridula, change, message):
     code, out, err = stridula("run", "pad.toml", "--set", change)
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert message in err
@@ -399,7 +399,7 @@ def test_a_failed_run_is_drawn_as_far_as_it_went(stridula, monkeypatch, tmp_path
     assert err.endswith(f"; nothing was kept (no --out); {words}\n")
 
 
-def test_an_interrupted_run_says_that_nothing_was_drawn(stridula, monkeypatch, tmp_path):
+def test_an_interrupted_run_reports_that_nothing_was_drawn(stridula, monkeypatch, tmp_path):
     monkeypatch.setattr(rich_bars.Progress, "update", interrupt)
     code, _, err = stridula("run", "squeal", "--duration", "0.25", "--plot", "part.png")
     assert (code, err.endswith("; no figure was drawn\n")) == (130, True)
@@ -439,7 +439,7 @@ def test_a_closed_pipe_is_quiet(shell):
 SWEEP = ("sweep", "squeal", *SHORT, "--measure", "mean_force", "--out", "map.nc")
 
 
-def test_sweep_writes_a_map_and_says_how_many_points_are_done(stridula, tmp_path):
+def test_sweep_writes_a_map_and_prints_the_number_of_points_done(stridula, tmp_path):
     grid = ("--vary", "friction=0.2:2.0:3", "--vary", "angle=20deg:80 deg:2")
     code, out, err = stridula(*SWEEP, *grid, "--measure", "shares", "--set", "transverse=3")
     assert (code, out, err) == (0, "6 points: 6 done; written to map.nc\n", "")
@@ -453,7 +453,7 @@ def test_sweep_writes_a_map_and_says_how_many_points_are_done(stridula, tmp_path
     assert [path.name for path in tmp_path.iterdir()] == ["map.nc"]
 
 
-def test_the_card_tells_compiling_from_marching():
+def test_the_card_distinguishes_compiling_from_marching():
     record = st.load_scenario("squeal", {"duration": "2 ms"}).simulate()
     record.attrs |= {"wall_time": 0.5, "compile_time": 0.0}
     assert card(record)["computed in"] == "0.5 s, 0.00 x real time"
@@ -463,7 +463,7 @@ def test_the_card_tells_compiling_from_marching():
     assert card(record)["computed in"] == "0.5 s, 0.00 x real time"
 
 
-def test_the_card_begins_with_what_is_heard():
+def test_the_card_begins_with_the_audible_tone():
     """The swing of the normal force at 23 Hz, which is not the squeal, comes later."""
     record = st.load_scenario("squeal").simulate()
     rows = card(record)
@@ -523,7 +523,7 @@ def test_points_of_a_sweep_that_fail_are_counted(stridula):
     assert st.load("map.nc")["angle"].values.tolist() == [80.0, 85.0, 90.0, 95.0]
 
 
-def test_what_all_points_of_a_sweep_fail_with_is_said_once(stridula):
+def test_a_failure_common_to_all_points_is_reported_once(stridula):
     code, out, err = stridula(*SWEEP, "--vary", "friction=0.2:2.0:3", "--set", "sample_rate=10 Hz")
     assert (code, err) == (0, "")
     assert out.startswith("3 of 3 failures: duration must be at least half a sample interval of 0.1 s, got 0.0")
@@ -624,7 +624,7 @@ def test_a_sweep_needs_a_file_and_a_measure(stridula, option):
     assert (code, out, err) == (2, "", f"stridula: Missing option '{option}'.\n")
 
 
-def test_ctrl_c_in_a_sweep_says_what_is_safe_and_the_same_command_goes_on(stridula, monkeypatch, tmp_path):
+def test_ctrl_c_in_a_sweep_reports_saved_parts_and_the_same_command_resumes(stridula, monkeypatch, tmp_path):
     many = (*SWEEP, "--vary", "friction=0.2:2:100")
     with monkeypatch.context() as patch:
         patch.setattr(rich_bars.Progress, "update", interrupt)

@@ -1,4 +1,4 @@
-"""Bars of the command line: the words beside them, and the time left."""
+"""Bars of the command line: their texts, and the time left."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from rich.progress import Progress
 
 import stridula as st
-from stridula.cli.doings import doings_shown
+from stridula.cli.long_tasks import tasks_shown
 from stridula.integration import bars, rich_bars
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
@@ -19,7 +19,7 @@ STEEL = st.Material(2.1e11, 7800.0, 0.3)
 
 @pytest.fixture
 def said(monkeypatch):
-    """Return what is said beside a bar."""
+    """Return the text beside a bar."""
     words: list[str] = []
     show = rich_bars.Progress.update
 
@@ -31,7 +31,7 @@ def said(monkeypatch):
     return words
 
 
-def test_compiling_is_said_where_something_is_compiled(said, tmp_path, monkeypatch):
+def test_compiling_is_reported_when_it_happens(said, tmp_path, monkeypatch):
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
 
     def twice(number):
@@ -47,14 +47,14 @@ def test_compiling_is_said_where_something_is_compiled(said, tmp_path, monkeypat
     assert said == [bars.COMPILING, "half"], "nothing is said when the bar has gone"
 
 
-def test_a_run_that_compiles_nothing_does_not_say_so(stridula, said):
+def test_a_run_that_compiles_nothing_does_not_report_compiling(stridula, said):
     for _ in range(2):
         assert stridula("run", "squeal", "--duration", "2 ms")[0] == 0
     assert said[-1].startswith("0.002 of 0.002 s, ")
     assert said.count(bars.COMPILING) <= 1
 
 
-def test_a_sensitivity_says_how_far_it_is(stridula, said):
+def test_a_sensitivity_shows_its_progress(stridula, said):
     arguments = ("--vary", "friction=1:1.5", "--duration", "2 ms", "--samples", "32")
     assert stridula("sensitivity", "squeal", *arguments)[0] == 0
     points = [words for words in said if words != bars.COMPILING]
@@ -83,7 +83,7 @@ def block():
 
 
 @pytest.mark.parametrize("name", ["pad", ""])
-def test_the_search_for_the_modes_of_a_large_body_is_told(block, caplog, name):
+def test_the_search_for_the_modes_of_a_large_body_is_reported(block, caplog, name):
     body = dataclasses.replace(block, name=name, cutoff=2000.0 + len(name))
     with caplog.at_level("INFO", "stridula"):
         body.modes()
@@ -91,12 +91,12 @@ def test_the_search_for_the_modes_of_a_large_body_is_told(block, caplog, name):
     begin, end = caplog.records
     words = f"modes of {name or 'the solid body'} ({3 * len(body.mesh.nodes):,} degrees of freedom)".replace(",", " ")
     assert begin.getMessage() == f"{words} ..."
-    assert begin.doing == words
+    assert begin.task == words
     assert end.getMessage().startswith(f"{words}: ")
-    assert end.doing is None
+    assert end.task is None
 
 
-def test_other_large_bodies_tell_of_it(caplog):
+def test_other_large_bodies_also_report_it(caplog):
     count = 1100
     mass, stiffness = np.ones(count), 1e4 * np.arange(1.0, count + 1.0)
     with caplog.at_level("INFO", "stridula"):
@@ -108,11 +108,11 @@ def test_other_large_bodies_tell_of_it(caplog):
         small = st.SolidBody.block((0.1, 0.02, 0.03), (2, 1, 1), STEEL, cutoff=9000.0)
         for body in (reduced, disc, small):
             body.modes()
-    begun = [record.doing for record in caplog.records if record.doing]
+    begun = [record.task for record in caplog.records if record.task]
     assert [words.split("(")[0] for words in begun] == ["modes of chain ", "modes of disc "]
 
 
-def test_a_bar_says_that_modes_are_found(said, block):
+def test_a_bar_reports_the_search_for_modes(said, block):
     with bars.bar("squeal"):
         dataclasses.replace(block, cutoff=2010.0).modes()
     assert [words.split("(")[0] for words in said] == ["modes of the solid body ", bars.PREPARING]
@@ -121,11 +121,11 @@ def test_a_bar_says_that_modes_are_found(said, block):
 
 
 @pytest.mark.parametrize("is_terminal", [True, False])
-def test_commands_without_a_bar_say_that_modes_are_found_and_leave_nothing(is_terminal, block, monkeypatch, capsys):
+def test_commands_without_a_bar_report_the_search_for_modes_and_leave_nothing(is_terminal, block, monkeypatch, capsys):
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("TTY_COMPATIBLE", "1" if is_terminal else "0")
     monkeypatch.setattr(sys.stderr, "isatty", lambda: is_terminal, raising=False)
-    with doings_shown():
+    with tasks_shown():
         dataclasses.replace(block, cutoff=2030.0 + is_terminal).modes()
     shown = capsys.readouterr().err
     if is_terminal:

@@ -1,4 +1,4 @@
-"""The command line between other programs: a scenario from a pipe, and what the shell completes."""
+"""The command line between other programs: scenarios from a pipe, and shell completion."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PROGRAM = "import sys; sys.argv[0] = 'stridula'; from stridula.cli import main; 
 
 @pytest.fixture
 def piped(monkeypatch):
-    """Put something into standard input."""
+    """Set standard input."""
 
     def put(content: bytes) -> None:
         monkeypatch.setattr(sys, "stdin", SimpleNamespace(buffer=io.BytesIO(content)))
@@ -29,7 +29,7 @@ def piped(monkeypatch):
     read._standard_input.cache_clear()
 
 
-def test_what_show_prints_is_what_run_takes(stridula, piped):
+def test_run_accepts_the_output_of_show(stridula, piped):
     piped(stridula("show", "belt")[1].encode())
     code, out, _ = stridula("run", "-", "--duration", "0.5", "--out", "piped.nc")
     assert (code, out.splitlines()[0].strip()) == (0, "Stick-slip on a belt")
@@ -37,7 +37,7 @@ def test_what_show_prints_is_what_run_takes(stridula, piped):
     assert np.array_equal(st.load("piped.nc").tangential_force, st.load("named.nc").tangential_force)
 
 
-def test_verbs_that_ask_twice_read_it_once(stridula, piped):
+def test_commands_read_standard_input_once(stridula, piped):
     piped(st.scenario_text("belt").encode())
     words = ["--vary", "v=0.4,0.5", "--measure", "mean_force", "--out", "a.nc", "--duration", "0.1", "--workers", "1"]
     code, _, error = stridula("sweep", "-", *[word.replace("v=", "velocity=") for word in words])
@@ -58,7 +58,7 @@ def test_files_that_it_names_are_found_from_here(stridula, piped, tmp_path):
         (b"\xff\xfe\x00", "scenario must be text in UTF-8 or, with a byte order mark, UTF-16, got 'standard input'"),
     ],
 )
-def test_what_is_wrong_with_it_is_said_in_one_line(stridula, piped, content, message):
+def test_errors_of_piped_scenarios_are_one_line(stridula, piped, content, message):
     piped(content)
     code, _, error = stridula("run", "-")
     assert code == 2

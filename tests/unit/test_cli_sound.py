@@ -1,8 +1,9 @@
-"""What is heard, from the command line: `stridula sound` and `stridula run --wav`."""
+"""Sound from the command line: `stridula sound` and `stridula run --wav`."""
 
 from __future__ import annotations
 
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -27,11 +28,19 @@ def records():
     }
 
 
-@pytest.fixture
-def kept(records, tmp_path):
-    """Write the records."""
+@pytest.fixture(scope="module")
+def folder(records, tmp_path_factory):
+    """Write the records into a folder and return it."""
+    folder = tmp_path_factory.mktemp("records")
     for name, record in records.items():
-        st.save(record, tmp_path / name)
+        st.save(record, folder / name)
+    return folder
+
+
+@pytest.fixture
+def kept(folder, tmp_path):
+    """Copy the files of the records."""
+    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
     (tmp_path / "none.toml").write_text("a = 1\n")
     round_track = "base = 'squeal'\n[track]\nsection = { shape = 'circle', diameter = '9 mm' }\n"
     (tmp_path / "round.toml").write_text(round_track)
@@ -59,7 +68,7 @@ def test_a_run_is_written_as_a_pair_of_ears_hears_it(stridula, tmp_path):
     np.testing.assert_allclose(pressure["x"], system.track.length / 2 + np.array([-0.09, 0.09]))
     assert stridula("sound", "run.nc", "--wav", "again.wav")[0] == 0
     assert (tmp_path / "run.wav").read_bytes() == (tmp_path / "again.wav").read_bytes()
-    # Each body can be heard by itself, and together they are the whole.
+    # Each body can be heard alone, and their sum is the whole.
     st.write_wav("track.wav", st.radiate(record, system.track))
     for body in ("track", "slider"):
         assert stridula("sound", "run.nc", "--body", body, "--wav", f"{body} alone.wav", "--full-scale", "1")[0] == 0
@@ -72,11 +81,11 @@ def test_a_run_is_written_as_a_pair_of_ears_hears_it(stridula, tmp_path):
 @pytest.mark.parametrize(
     ("name", "asked", "message"),
     [
-        ("brake", ("--set", "surface_rate=1 kHz"), "surface_rate must be left out, or all, to be heard, got 1000.0"),
-        ("squeal", ("--duration", "10 us"), "duration must be at least 2e-05 s, two samples, to be heard, got 1e-05"),
+        ("brake", ("--set", "surface_rate=1 kHz"), "surface_rate must be left out, or all, for sound, got 1000.0"),
+        ("squeal", ("--duration", "10 us"), "duration must be at least 2e-05 s, two samples, for its sound, got 1e-05"),
     ],
 )
-def test_what_cannot_be_heard_is_refused_before_the_run(stridula, monkeypatch, tmp_path, name, asked, message):
+def test_inaudible_systems_are_refused_before_the_run(stridula, monkeypatch, tmp_path, name, asked, message):
     def fail(*_, **__):
         raise AssertionError("it ran")
 
@@ -127,7 +136,7 @@ def test_a_float_file_holds_what_is_beyond_full_scale(stridula):
 
 
 @pytest.mark.usefixtures("kept")
-def test_without_a_baffle_one_hears_less_and_from_below_too(stridula):
+def test_sound_without_a_baffle_is_quieter_and_reaches_below(stridula):
     places = ("--listener", "0.6,0,0.5", "--listener", "0.6,0,-0.5")
     alone = ("--body", "track")
     code, out, err = stridula("sound", "run.nc", *alone, "--unbaffled", *places, "--wav", "free.wav")
@@ -153,12 +162,12 @@ def test_a_spectrogram_is_drawn_and_named_after_the_case(stridula, tmp_path, mon
 
 
 @pytest.mark.usefixtures("kept")
-def test_silence_is_said(stridula):
+def test_silence_is_reported(stridula):
     code, out, err = stridula("sound", "open.nc", "--body", "track", "--wav", "a.wav")
     assert (code, err) == (0, "")
     assert out.startswith("a.wav: 2 channels, 48 kHz, 0.005 s, silence (full scale 1 Pa)\ntrack is silent: the contact")
     assert not st.read_wav("a.wav").any()
-    # A slider that is drawn into the air is heard all the same.
+    # A slider that is pulled into the air is still heard.
     code, out, err = stridula("run", "squeal", "--duration", "30 ms", "--set", "gap=10", "--wav", "b.wav")
     assert (code, err) == (0, "")
     assert "track is silent: the contact never presses; slider: a line of dipoles" in out
@@ -172,7 +181,7 @@ def test_a_silent_spectrogram_is_drawn(stridula):
 
 
 @pytest.mark.usefixtures("kept")
-def test_what_a_coarse_record_misses_is_said(stridula):
+def test_omissions_of_a_coarse_record_are_reported(stridula):
     code, out, err = stridula("sound", "coarse.nc")
     assert (code, err) == (0, "")
     assert "modes above what the record's sample rate carries are left out" in out
@@ -190,12 +199,12 @@ def with_another_track_on_the_way(records):
     return run, [s.system for s in scenarios], half
 
 
-def test_a_record_whose_track_was_changed_is_sounded_in_parts_only(stridula, records, tmp_path):
+def test_a_record_with_a_changed_track_is_heard_in_parts_only(stridula, records, tmp_path):
     run, systems, half = with_another_track_on_the_way(records)
-    message = rf"run must have the same track all the time to be heard, got another one from {half:.6g} s on"
+    message = rf"run must have the same track throughout to be heard, got another one from {half:.6g} s on"
     with pytest.raises(ValueError, match=f"^{message}"):
         st.radiate(run, systems[1].track)
-    with pytest.raises(ValueError, match=r"^run must have the same bodies and drives all the time to be heard"):
+    with pytest.raises(ValueError, match=r"^run must have the same bodies and drives throughout to be heard"):
         st.radiate(run, systems[1], bodies=[systems[1].slider])
     st.save(run, tmp_path / "changed.nc")
     code, out, err = stridula("sound", "changed.nc")
@@ -211,7 +220,7 @@ def test_a_record_whose_track_was_changed_is_sounded_in_parts_only(stridula, rec
         np.testing.assert_array_equal(*(soundfile.read(tmp_path / f"{name}.wav")[0] for name in ("part", "mine")))
 
 
-def test_of_a_record_on_which_drives_were_changed_the_track_is_heard_alone(stridula, records):
+def test_only_the_track_is_heard_if_drives_were_changed(stridula, records):
     run, _, half = with_another_track_on_the_way(records)
     system = st.load_scenario(records["run.nc"]).system
     texts = [
@@ -231,7 +240,7 @@ def test_a_plate_that_was_changed_is_another_track():
     scenarios = [st.load_scenario("squeal-on-plate", {"bodies.plate.thickness": t}) for t in (0.004, 0.008)]
     runs = [one.simulate(duration=2e-3) for one in scenarios]
     changes = [{"time": t, "scenario": run.attrs["scenario"]} for t, run in zip((0.0, 1e-3), runs, strict=True)]
-    with pytest.raises(ValueError, match="run must have the same track all the time to be heard"):
+    with pytest.raises(ValueError, match="run must have the same track throughout to be heard"):
         st.radiate(runs[0].assign_attrs(changes=json.dumps(changes)), scenarios[0].system.track)
 
 
@@ -251,7 +260,7 @@ BAD = [
     ((*IN, "--listener", "nan,0,1"), "--listener must be X,Y,Z in m"),
     ((*IN, "--listener", "0,0,1e9"), "within 1000 m, got '0,0,1e9'"),
     ((*IN, "--unbaffled", "--listener", "0.3,0,0"), "from the beam's axis"),
-    ((*IN, "--body", "trak"), "--body must be one that can be heard: track, slider, got 'trak'"),
+    ((*IN, "--body", "trak"), "--body must be a body that radiates sound: track, slider, got 'trak'"),
     ((*IN, "--wav", "none/a.wav"), "there is no folder 'none'"),
     ((*IN, "--wav", "."), "it is a directory"),
     ((*IN, "--wav", "run.nc"), "--wav must be another file than the record"),
@@ -270,15 +279,15 @@ BAD = [
     ((*IN, *WAV, "--subtype", "PCM_16"), "did you mean 'PCM_24'?"),
     (("sound", "none.nc", *WAV), "cannot read 'none.nc'"),
     (("sound", "none.toml", *WAV), "must be a record"),
-    (("sound", "belt.nc", *WAV), "system must have a body with a surface to be heard, got none of block"),
-    (("sound", "failed.nc", *WAV), "one that can be believed, got one that ended 'not finite'"),
+    (("sound", "belt.nc", *WAV), "system must have a body with a surface, which radiates sound, got none of block"),
+    (("sound", "failed.nc", *WAV), "one that did not diverge, got one that ended 'not finite'"),
     (("sound", *WAV), "Missing argument"),
     (("run", "squeal", "--wav", "none/a.wav"), "there is no folder 'none'"),
     (("run", "squeal", "--wav", "."), "it is a directory"),
     (("run", "squeal", "--wav", "a.nc", "--out", "a.nc"), "--wav must be another file than --out"),
     (("run", "squeal", "--wav", "a.png", "--plot", "a.png"), "--wav must be another file than --plot"),
     (("run", "run.nc", "--wav", "run.nc"), "--wav must be another file than the scenario"),
-    (("run", "belt", "--wav", "a.wav"), "system must have a body with a surface to be heard"),
+    (("run", "belt", "--wav", "a.wav"), "system must have a body with a surface, which radiates sound"),
     (("run", "round.toml", "--wav", "a.wav"), "track must have a Rectangle as section"),
     (("sound", "open.nc", "--body", "track", "--bands", "a.png"), "--bands must hold a sound, got silence"),
 ]
@@ -297,7 +306,7 @@ def test_bad_input_is_one_line_and_writes_nothing(stridula, tmp_path, monkeypatc
     assert written(tmp_path) == before
 
 
-def test_an_interrupted_run_says_that_no_sound_was_written(stridula, monkeypatch, tmp_path):
+def test_an_interrupted_run_reports_that_no_sound_was_written(stridula, monkeypatch, tmp_path):
     def interrupt(*arguments, **fields):
         raise KeyboardInterrupt
 
@@ -367,7 +376,7 @@ def test_a_plate_in_space_is_heard_in_open_air_or_in_a_wall(stridula, tmp_path):
 
 
 @pytest.mark.parametrize("floor", [False, True])
-def test_of_several_contacts_those_on_a_track_drive_it(stridula, tmp_path, floor):
+def test_only_contacts_on_a_track_drive_it(stridula, tmp_path, floor):
     """Two feet of one body: one on a floor and one on a beam, or both on the beam."""
     feet = st.ReducedBody(
         np.eye(4) * 0.1, np.eye(4) * 1e5, {"left": (0, 1), "right": (2, 3)}, damping=st.Rayleigh(1.0, 1e-6)
@@ -388,7 +397,7 @@ def test_of_several_contacts_those_on_a_track_drive_it(stridula, tmp_path, floor
     assert (tmp_path / "feet.wav").read_bytes() == (tmp_path / "same.wav").read_bytes()
 
 
-def test_what_has_not_arrived_is_silence(stridula):
+def test_sound_that_has_not_arrived_is_silence(stridula):
     assert stridula("run", "judder", "--duration", "3 ms", "--out", "early.nc")[0] == 0
     code, out, _ = stridula("sound", "early.nc", "--body", "track", "--wav", "early.wav")
     assert code == 0
@@ -397,10 +406,10 @@ def test_what_has_not_arrived_is_silence(stridula):
 
 
 @pytest.mark.usefixtures("kept")
-def test_a_coarse_record_says_up_to_where_its_sound_is_whole(stridula):
+def test_a_coarse_record_reports_its_bandwidth(stridula):
     code, out, _ = stridula("sound", "coarse.nc")
     assert code == 0
-    assert "whole up to 833.3 Hz only" in out
+    assert "complete only up to 833.3 Hz" in out
 
 
 @pytest.mark.usefixtures("kept")

@@ -1,4 +1,4 @@
-"""The verbs that look at many parameters: stability, calibrate, sensitivity."""
+"""Commands over many parameters: stability, calibrate, sensitivity."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from stridula.studies.measures import MEASURES
 SHORT = ("--duration", "2 ms")
 
 
-def test_stability_says_equilibrium_and_modes(stridula):
+def test_stability_prints_equilibrium_and_modes(stridula):
     code, out, err = stridula("stability", "weak-pressure", "--set", "friction=1.2")
     assert (code, err) == (0, "")
     modes = st.sliding_stability(st.load_scenario("weak-pressure", {"friction": 1.2}).system)
@@ -97,7 +97,7 @@ def test_stability_over_a_parameter_prints_draws_and_writes(stridula, tmp_path):
     assert (tmp_path / "loci.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_stability_says_what_holds_where_nothing_changes(stridula):
+def test_stability_reports_an_unchanged_verdict(stridula):
     code, out, _ = stridula("stability", "squeal", "--vary", "friction=0.5,1.5,1.6")
     assert (code, out) == (
         0,
@@ -117,17 +117,20 @@ BAD_STABILITY = [
     (("--highest", "9"), "--highest must go with --vary, got 9.0 alone"),
     (("--set", "frition=1"), "did you mean 'friction'?"),
     (("--status", "slding"), "did you mean 'sliding'?"),
-    (("--status", "sliding,sliding"), "status must hold one for each contact, 1 in all"),
+    (("--status", "sliding,sliding"), "status must have one value for each contact, 1 in all"),
     (("--velocity", "0"), "velocity must not be 0, got 0.0"),
     (("--velocity", "nan"), "velocity must be finite, got 'nan'"),
     (("--vary", "frition=0:1:3"), "did you mean 'friction'?"),
     (("--vary", "friction"), "--vary must be KEY=START:STOP:COUNT"),
     (("--vary", "friction=1:0:3"), "--vary must have START below STOP"),
     (("--vary", "friction=0:inf:3"), "--vary must have finite numbers"),
-    (("--vary", "friction=0.5"), "--vary must give at least 2 rising numbers of one unit here"),
-    (("--vary", "friction=0.6,0.5"), "--vary must give at least 2 rising numbers of one unit here"),
-    (("--vary", "angle=10 deg,0.5"), "--vary must give at least 2 rising numbers of one unit here"),
-    (("--vary", "root_support=guided,clamped"), "--vary must give at least 2 rising numbers of one unit here"),
+    (("--vary", "friction=0.5"), "--vary must give at least 2 increasing numbers in one unit for this command"),
+    (("--vary", "friction=0.6,0.5"), "--vary must give at least 2 increasing numbers in one unit for this command"),
+    (("--vary", "angle=10 deg,0.5"), "--vary must give at least 2 increasing numbers in one unit for this command"),
+    (
+        ("--vary", "root_support=guided,clamped"),
+        "--vary must give at least 2 increasing numbers in one unit for this command",
+    ),
     (("--vary", "friction=0:1:10001"), "--vary must have a COUNT of at most 10000 here"),
     (("--vary", "friction=0:1 N:3"), "contact.friction.coefficient must be a number, got '0.0 N'"),
     (("--vary", "elements=4:6:5"), "slider.elements must be a whole number, got 4.5"),
@@ -148,8 +151,14 @@ BAD_CALIBRATIONS = [
     (("--vary", "friction=0:1", "--target", "travel=1:2:3:4"), "--target must be NAME=LOW:HIGH"),
     (("--vary", "friction=0:1", "--target", "travel=a:b"), "--target must have numbers for LOW, HIGH and SCALE, in SI"),
     (("--vary", "friction=0:1", "--target", "travel=1 mm:2 mm"), "--target must have numbers for LOW, HIGH and SCALE"),
-    (("--vary", "friction=0:1", "--target", "travel=2:1"), "low and high must be a range with an end"),
-    (("--vary", "friction=0:1", "--target", "travel=:"), "low and high must be a range with an end"),
+    (
+        ("--vary", "friction=0:1", "--target", "travel=2:1"),
+        "low and high must be bounds in order, at least one of them finite",
+    ),
+    (
+        ("--vary", "friction=0:1", "--target", "travel=:"),
+        "low and high must be bounds in order, at least one of them finite",
+    ),
     (("--vary", "friction=0:1", "--target", "travel=1:1"), "scale must be given for a target at one value"),
     (("--vary", "friction=0:1", "--target", "travel=nan:1"), "low must be a number, got nan"),
     (("--vary", "friction=0:1", "--target", "trvel=0:1"), "did you mean 'travel'?"),
@@ -163,7 +172,7 @@ BAD_CALIBRATIONS = [
     (("--vary", "friction=0:nan", "--target", "travel=0:1"), "--vary must have finite numbers"),
     (("--vary", "friction=0:1 N", "--target", "travel=0:1"), "contact.friction.coefficient must be a number"),
     (("--vary", "elements=4:8", "--target", "travel=0:1"), "slider.elements must be a whole number"),
-    (("--vary", "angle=95deg:99deg", "--target", "travel=0:1"), "ranges must hold sets that can be run, got 32"),
+    (("--vary", "angle=95deg:99deg", "--target", "travel=0:1"), "ranges must contain sets that can be run, got 32"),
     ((*SEARCH, "--vary", "friction=0:1"), "--vary must name each key once"),
     ((*SEARCH, "--vary", "coefficient=0:1"), "which both mean contact.friction.coefficient"),
     ((*SEARCH, "--set", "friction=1"), "key must be set or varied"),
@@ -207,7 +216,7 @@ def test_bad_input_is_one_line_and_writes_nothing(stridula, tmp_path, monkeypatc
     assert (tmp_path / "kept").read_text() == "kept"
 
 
-def test_what_was_calibrated_runs_again_as_the_best_did(stridula, tmp_path):
+def test_the_calibrated_scenario_reruns_the_best_set(stridula, tmp_path):
     (tmp_path / "mine.toml").write_text(
         'base = "stable-sliding"\ntitle = "Mine"\n[[simulation.probes]]\nbody = "track"\nquantity = "velocity"\n'
         'point = "centre"\n'
@@ -260,7 +269,7 @@ def interrupt(*arguments, **fields):
     raise KeyboardInterrupt
 
 
-def test_ctrl_c_says_the_best_so_far(stridula, monkeypatch, tmp_path):
+def test_ctrl_c_prints_the_best_so_far(stridula, monkeypatch, tmp_path):
     arguments = (*SEARCH, "--population", "5", "--out", "found.toml")
     with monkeypatch.context() as patch:
         patch.setattr(searching, "calibrate", interrupt)
@@ -293,7 +302,7 @@ def test_sensitivity_prints_and_writes(stridula):
     assert float(found["probability"].sum()) == pytest.approx(1.0)
 
 
-def test_sensitivity_says_why_there_are_no_shares(stridula):
+def test_sensitivity_explains_missing_shares(stridula):
     code, out, _ = stridula("sensitivity", "squeal", "--vary", "angle=95deg:99deg", *SHORT, "--samples", "8")
     assert code == 0
     assert "No shares of the variance: they need 8 samples in which all runs give numbers, got 0." in out

@@ -1,4 +1,4 @@
-"""Two records side by side: differences that are put in are found, where and when they were put in."""
+"""Comparison of two records: inserted differences are found at their places and times."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def test_a_record_is_equal_to_itself(record):
     assert found.sizes["attribute"] == 0
 
 
-def test_a_difference_is_found_where_it_was_put(record):
+def test_an_inserted_difference_is_found_in_its_place(record):
     other = record.copy(deep=True)
     largest = float(np.abs(record["normal_force"]).max())
     other["normal_force"][300] += 1e-4 * largest
@@ -62,7 +62,7 @@ def test_nan_is_equal_to_nan_and_far_from_a_number(record):
     assert float(found["first_time"]) == record["time"].values[7]
 
 
-def test_what_was_set_otherwise_is_told_by_key(record):
+def test_different_settings_are_listed_by_key(record):
     other = st.load_scenario("squeal", {"duration": "5 ms", "gap": 0.0, "friction": 1.4}).simulate(
         scheme=st.CentralDifference(), probes=[]
     )
@@ -140,13 +140,13 @@ def test_each_contact_is_compared_on_its_own():
     assert not any("sweeps" in str(name) for name in found["variable"].values)
 
 
-def test_what_cannot_be_compared_is_told(record):
+def test_incomparable_records_are_reported(record):
     for other, message in [
         (
             st.load_scenario("squeal", {"duration": "5 ms", "sample_rate": 5e4}).simulate(),
             "b must have the sample inter",
         ),
-        (record.assign_coords(time=record["time"] + 1.0), "b must have a time of a"),
+        (record.assign_coords(time=record["time"] + 1.0), "b must overlap a in time"),
         (record.isel(time=slice(0, 0)), "b must have samples to compare, got a record without any"),
         (xr.Dataset(), "b must be a record of simulate"),
         ("run.nc", "b must be a Dataset"),

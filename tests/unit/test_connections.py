@@ -1,4 +1,4 @@
-"""Springs, dashpots and rigid tracks: what they refuse, and how systems hold them."""
+"""Springs, dashpots and rigid tracks: refused arguments, and their use in systems."""
 
 from __future__ import annotations
 
@@ -124,11 +124,11 @@ def test_a_spring_along_a_prescribed_motion_is_refused():
 def test_a_reaction_needs_a_body_without_connections():
     system = pair(lambda rod: [st.Force(rod.root, y=-1.0)], 0.5)
     joined = st.System(system.contact, system.drives, [st.Spring(system.slider.root, stiffness=1.0)])
-    with pytest.raises(ValueError, match=r"^connections must leave a body whose Reaction is recorded"):
+    with pytest.raises(ValueError, match=r"^connections must not join a body whose Reaction is recorded"):
         st.simulate(joined, 1e-3, probes=[st.Reaction(system.slider)])
 
 
-def test_only_what_is_joined_is_coupled():
+def test_only_joined_bodies_are_coupled():
     """A spring on a mass alone keeps its modes apart; one between bodies couples theirs, and theirs only."""
     contact = st.PointContact(ROD.tip, BAR, at=0.2)
     own = [st.Spring(ONE.centre, stiffness=9.0), st.Dashpot(ONE.centre, coefficient=0.1)]

@@ -1,4 +1,4 @@
-"""Damping in scenarios: every form from TOML, by key, on the card and in the schema; what is refused, in one line."""
+"""Damping in scenarios: every form from TOML, by key, on the card and in the schema; refusals in one line."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_keys_of_laws_that_are_not_there_hide_no_others():
         ),
     ],
 )
-def test_what_is_refused_is_named_in_one_line(given, message):
+def test_refusals_are_one_line(given, message):
     with pytest.raises(st.ScenarioError, match=message) as caught:
         st.load_scenario("squeal", {"damping": given})
     assert len(str(caught.value).splitlines()) == 1

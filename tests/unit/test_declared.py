@@ -1,4 +1,4 @@
-"""What the fields of a description are declared to be: checked, and made into the keys of a table."""
+"""Declared fields of descriptions: checked, and used as the keys of a table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Drives and contact: what they refuse, and the directions of forces."""
+"""Drives and contact: refused arguments, and the directions of forces."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def test_contact_tip_is_a_point_of_another_body_than_the_track():
     ],
 )
 def test_a_force_accelerates_the_slider_along_its_direction(component, direction, angle):
-    """Free flight, a gap of 1 m: the momentum after T is F T along the world direction, whatever the point."""
+    """Free flight, a gap of 1 m: the momentum after T is F T along the world direction, for any point."""
     rod = slider(angle)
     for position in (0.0, 0.17, 0.5):
         force = st.Force(rod.at(position), **{component: 0.4})
@@ -188,12 +188,12 @@ EVERY_DRIVE = {
 }
 
 
-def test_each_drive_is_there():
+def test_every_drive_is_tested():
     assert {drive.kind: type(drive) for drive in EVERY_DRIVE.values()} == {kind.kind: kind for kind in DRIVES}
     assert list(EVERY_DRIVE) == [kind.kind for kind in DRIVES]
 
 
-def test_a_drive_says_what_it_does_and_to_what():
+def test_a_drive_has_its_effect_and_its_target():
     said = {name: (drive.place, drive.acted_on, drive.velocities) for name, drive in EVERY_DRIVE.items()}
     assert said == {
         "force": ("point", ROD, ()),

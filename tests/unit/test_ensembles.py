@@ -112,7 +112,7 @@ def test_of_several_contacts_only_the_first_gap_moves():
     assert [contact.gap for contact in moved.contacts] == [1e-3 * 1.01, 2.0]
 
 
-def test_a_run_that_diverged_is_told_and_the_others_go_on(monkeypatch):
+def test_a_run_that_diverged_is_reported_and_the_others_continue(monkeypatch):
     """A force that overflows in one run of four."""
     from stridula.studies import ensembles
 
@@ -161,7 +161,7 @@ def test_shares_of_states_are_those_of_the_record():
         ({"step": -1.0}, "step must be above 0"),
     ],
 )
-def test_what_makes_no_ensemble_is_told(change, message):
+def test_bad_arguments_are_reported(change, message):
     arguments = {"system": sliding_block(), "duration": 1e-3, "measures": {"place": last_place}, "runs": 2} | change
     system, duration, measures = (arguments.pop(name) for name in ("system", "duration", "measures"))
     with pytest.raises(ValueError, match=message):

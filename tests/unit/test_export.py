@@ -1,4 +1,4 @@
-"""Records as tables for other programs: what is read back is what was recorded."""
+"""Records as tables for other programs: they are read back unchanged."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def test_an_empty_record_is_a_table_without_rows(record, tmp_path):
     st.export(empty, tmp_path / "run.mat")
 
 
-def test_columns_are_told_apart(record, two):
+def test_columns_have_different_names(record, two):
     for run in (record, two):
         found = columns(run)
         assert len({column.name for column in found}) == len(found)
@@ -120,14 +120,14 @@ def test_columns_are_told_apart(record, two):
         ("folder.csv", OSError, "it is a directory"),
     ],
 )
-def test_what_cannot_be_written_is_told_and_leaves_nothing(record, tmp_path, name, error, message):
+def test_failed_writes_are_reported_and_leave_nothing(record, tmp_path, name, error, message):
     (tmp_path / "folder.csv").mkdir()
     with pytest.raises(error, match=message):
         st.export(record, tmp_path / name)
     assert [path.name for path in tmp_path.iterdir()] == ["folder.csv"]
 
 
-def test_what_is_no_record_cannot_be_exported(tmp_path):
+def test_other_datasets_cannot_be_exported(tmp_path):
     with pytest.raises(ValueError, match="run must be a record of simulate, a Dataset"):
         st.export(3, tmp_path / "run.csv")
     with pytest.raises(ValueError, match="run must be a record with time, got one with"):

@@ -1,4 +1,4 @@
-"""Packages that an extra brings: without one, a line says what needs it and how it is installed."""
+"""Packages of extras: if one is missing, an error names its purpose and how to install it."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from stridula.extras import NEEDED, MissingPackage, how_to_install, missing, nam
 
 ROOT = Path(__file__).resolve().parents[2]
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
-# An interpreter in which packages are as if they had never been installed.
+# An interpreter in which packages appear not to be installed.
 WITHOUT = """
 import sys
 from importlib.machinery import PathFinder
 found = PathFinder.find_spec
 PathFinder.find_spec = lambda name, *where: None if name.partition(".")[0] in {packages!r} else found(name, *where)
 """
-# What a user does without any of them, and the line that answers, up to the package.
+# Actions of a user without any of them, and the error up to the name of the package.
 IN_PYTHON = {
     "st.load_scenario('squeal')": "scenarios need pydantic",
     "st.sweep": "scenarios need pydantic",
@@ -52,7 +52,7 @@ for code in CODES:
     except Exception as error:
         print(type(error).__name__ + ": " + str(error))
 """
-# Verbs where the command line is there, and what it is for is not.
+# Commands with the command line installed, but not the package of the command.
 VERBS = {
     ("run", "squeal", "--plot", "a.png"): "figures need matplotlib",
     ("run", "squeal", "--wav", "a.wav"): "sound files need soundfile",
@@ -77,7 +77,7 @@ def run_without(packages: set[str], code: str, folder: Path) -> subprocess.Compl
 
 
 def line(beginning: str) -> str:
-    """Return all that is to be said."""
+    """Return the complete line."""
     package = beginning.rpartition(" ")[2]
     return f'{beginning}, which is not installed: pip install ".[{NEEDED[package][1]}]" in the sources'
 
@@ -88,7 +88,7 @@ def test_in_python_the_error_names_the_extra(tmp_path):
     assert said == {code: f"MissingPackage: {line(beginning)}" for code, beginning in IN_PYTHON.items()}, done.stderr
 
 
-def test_the_command_line_says_so_in_one_line_before_it_runs(tmp_path):
+def test_the_command_line_reports_it_in_one_line_before_it_runs(tmp_path):
     packages = {"matplotlib", "soundfile", "starlette", "uvicorn"}
     done = run_without(packages, f"VERBS = {[*VERBS]!r}\n{EACH_VERB}", tmp_path)
     assert done.stderr.splitlines() == [f"stridula: {line(beginning)}" for beginning in VERBS.values()]
@@ -96,23 +96,23 @@ def test_the_command_line_says_so_in_one_line_before_it_runs(tmp_path):
     assert not [*tmp_path.iterdir()]
 
 
-def test_without_a_command_line_the_command_says_so(tmp_path):
+def test_without_a_command_line_the_command_reports_it(tmp_path):
     done = run_without({"typer"}, "sys.argv = ['stridula', 'list']\nfrom stridula.cli import main\nmain()", tmp_path)
     assert (done.returncode, done.stderr) == (2, f"stridula: {line('the command line needs typer')}\n")
 
 
-def test_what_no_extra_brings_is_an_error_of_its_own():
+def test_other_missing_modules_keep_their_own_error():
     with pytest.raises(ModuleNotFoundError, match="No module named 'nothing_of_ours'") as caught, named_extras():
         import nothing_of_ours  # noqa: F401
     assert not isinstance(caught.value, MissingPackage)
 
 
-def test_names_that_are_not_there_stay_attribute_errors():
+def test_missing_names_stay_attribute_errors():
     with pytest.raises(AttributeError, match=r"module 'stridula\.plot' has no attribute 'overvew'"):
         on_first_use("stridula.plot", {}, "overvew")
 
 
-def test_a_package_that_is_there_is_not_missed(monkeypatch):
+def test_an_installed_package_is_not_reported(monkeypatch):
     require("pytest")
     monkeypatch.setitem(sys.modules, "soundfile", None)
     with pytest.raises(MissingPackage, match="soundfile"):
@@ -125,7 +125,7 @@ def test_the_error_crosses_to_other_processes():
 
 
 def brought(extra: str) -> set[str]:
-    """Return the packages of an extra and of those that it names."""
+    """Return the packages of an extra and of the extras that it includes."""
     found = set()
     for text in EXTRAS[extra]:
         name, inner = re.match(r"([\w-]+)(?:\[(.*?)\])?", text).groups()

@@ -32,7 +32,7 @@ def test_a_record_reads_back_equal(record, tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_a_record_read_back_can_be_gone_on_from(record, tmp_path):
+def test_a_record_read_back_can_be_continued(record, tmp_path):
     st.save(record, tmp_path / "run.nc")
     scenario = st.load_scenario("squeal", {"duration": "1 ms"})
     onwards = scenario.simulate(start=st.load(tmp_path / "run.nc"))
@@ -69,7 +69,7 @@ def test_a_full_disk_leaves_the_old_file(record, tmp_path, monkeypatch):
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
-def test_a_full_device_is_told(record):
+def test_a_full_device_is_reported(record):
     with pytest.raises(OSError, match=r"^cannot write '/dev/full': no space left on device$"):
         st.save(record, "/dev/full")
 
@@ -78,7 +78,7 @@ def test_a_full_device_is_told(record):
     ("name", "message"),
     [("", "it is a directory"), ("none/run.nc", "there is no folder"), ("f/x", "there is no folder")],
 )
-def test_a_place_that_cannot_be_written_is_told(record, tmp_path, name, message):
+def test_a_path_that_cannot_be_written_is_reported(record, tmp_path, name, message):
     (tmp_path / "f").touch()
     with pytest.raises(OSError, match=f"^cannot write .*: {message}"):
         st.save(record, tmp_path / name)
@@ -94,7 +94,7 @@ def test_a_write_protected_file_is_left_alone(record, tmp_path, monkeypatch):
     assert path.read_bytes() == b"old"
 
 
-def test_what_is_no_record_is_refused(record, tmp_path):
+def test_other_files_are_refused(record, tmp_path):
     (tmp_path / "text.nc").write_text("no")
     xr.Dataset({"a": ("x", np.ones(2))}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
     st.save(record, tmp_path / "run.nc")
@@ -102,7 +102,7 @@ def test_what_is_no_record_is_refused(record, tmp_path):
     for name, message in [
         ("text.nc", "must be a record that stridula wrote"),
         ("other.nc", "must be a record that stridula wrote"),
-        ("cut.nc", "must be a whole record"),
+        ("cut.nc", "must be a complete record"),
     ]:
         with pytest.raises(ValueError, match=message):
             st.load(tmp_path / name)

@@ -1,4 +1,4 @@
-"""Laws of friction: what they refuse, and their curves."""
+"""Laws of friction: refused arguments, and their curves."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def test_steady_rate_and_state(evolution):
     assert st.RateAndState(**STATE, initial_state=3.0).state_at_start == 3.0
 
 
-def test_laws_are_values_and_say_what_they_are():
+def test_laws_compare_by_value_and_print_themselves():
     laws = [kind(**words) for kind, words in SOUND.items()]
     again = [kind(**words) for kind, words in SOUND.items()]
     assert laws == again
@@ -124,12 +124,12 @@ def every_law():
     return [*laws, st.RateAndState(**STATE, evolution="slip")]
 
 
-def test_each_law_is_there():
+def test_every_law_is_tested():
     assert {type(law) for law in every_law()} == set(LAWS)
 
 
 @pytest.mark.parametrize("law", every_law(), ids=str)
-def test_what_a_law_says_of_itself_is_what_the_march_knows(law):
+def test_declared_properties_of_laws_agree_with_the_march(law):
     code = getattr(at, law.kernel_code)
     assert law.set_valued == friction.set_valued.py_func(code)
     assert len(law.parameters()) < at.LAW_PARAMETERS

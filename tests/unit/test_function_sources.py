@@ -1,4 +1,4 @@
-"""Studies of what a function makes of values: the same as of scenarios, and its faults in one line."""
+"""Studies of systems made by functions: the same as with scenarios, with errors in one line."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def test_points_at_which_it_fails_are_kept_with_their_message():
     assert found["message"].values[2] == "fails_above_one: KeyError: 'too much'"
 
 
-def test_a_file_is_of_one_function(tmp_path):
+def test_a_file_belongs_to_one_function(tmp_path):
     out = tmp_path / "map.nc"
     first = st.sweep(squeal, {"friction": [0.3]}, FORCES, out=out, **SHORT)
     xr.testing.assert_identical(st.sweep(squeal, {"friction": [0.3]}, FORCES, out=out, **SHORT), first)
@@ -130,7 +130,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("function", "options", "message"), BAD, ids=[message for *_, message in BAD])
-def test_what_is_wrong_with_a_function_is_one_line(function, options, message):
+def test_errors_of_functions_are_one_line(function, options, message):
     given = {"points": {"friction": [0.3]}, "measures": "mean_force", **SHORT} | options
     with pytest.raises(ValueError) as error:
         st.sweep(function, **given)
@@ -152,7 +152,7 @@ def of_two(friction, angle):
     return squeal(friction, angle)
 
 
-def test_shares_of_the_variance_of_what_a_function_makes():
+def test_sensitivity_of_a_function():
     uncertain = {"friction": scipy.stats.norm(0.5, 0.05), "angle": ("20 deg", "30 deg")}
     words = {"samples": 8, "resamples": 9, **SHORT}
     made, read = (st.sensitivity(source, uncertain, ["mean_force"], **words) for source in (squeal, "squeal"))
@@ -186,7 +186,7 @@ def test_ensembles_of_a_system_a_scenario_or_a_function():
         (3, {}, "system must be a System, got 3"),
     ],
 )
-def test_what_makes_no_ensemble_is_told(system, options, message):
+def test_bad_arguments_are_reported(system, options, message):
     with pytest.raises(ValueError) as error:
         st.ensemble(system, 1e-3, {"mean": mean}, runs=2, **options)
     assert message in str(error.value)

@@ -1,4 +1,4 @@
-"""Histories: factor and integral belong together, and what they refuse."""
+"""Histories: consistency of factor and integral, and refused arguments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How to install is said in a form that works from the sources: there is no distribution of this name on the index."""
+"""Instructions to install use the sources: there is no distribution of this name on the index."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ FILES = [
     *(path for suffix in ("rst", "md") for path in (ROOT / "docs").glob(f"*.{suffix}")),
     *ROOT.glob("*.md"),
 ]
-# A name with extras, or a name to install, of which the index would have to know.
+# A name with extras, or a name to install, which would have to be on the index.
 FROM_THE_INDEX = r"stridula\[\w+\]|pip install\s+stridula\b"
 
 

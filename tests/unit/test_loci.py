@@ -1,4 +1,4 @@
-"""Root loci and critical values: closed forms of two coupled modes, following, bad arguments, the figure."""
+"""Root loci and critical values: closed forms of two coupled modes, tracking, bad arguments, the figure."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_frequencies_follow_the_closed_form_and_lock_in():
 
 
 def test_a_mode_keeps_its_number_across_a_crossing():
-    # Two modes that do not couple cross without touching: each goes straight on.
+    # Two uncoupled modes cross without interaction: each continues straight.
     def crossing(value: float) -> st.System:
         stiffness = np.diag([1.0, (0.5 + value) ** 2, 4.0])
         body = st.ReducedBody(np.eye(3), stiffness, points={"foot": (None, 2)}, translation=np.zeros((2, 3)))
@@ -58,7 +58,7 @@ def test_a_scenario_is_varied_by_key_and_unit():
     assert found.max() <= 4e3
 
 
-def test_critical_value_is_closed_in_on():
+def test_critical_value_is_bracketed():
     found = st.critical_value(hoffmann_at, "friction", 0.5, 1.0, tolerance=1e-10)
     assert float(found["value"]) == pytest.approx(0.75, abs=1e-10)
     assert float(found["stable"]) < float(found["unstable"]) <= float(found["stable"]) + 1e-10
@@ -72,7 +72,7 @@ def test_critical_value_with_damping(damping):
 
 
 def test_a_mode_may_become_stable_again():
-    # More damping on both modes calms a pair that would flutter.
+    # More damping on both modes stabilises a pair that would flutter.
     found = st.critical_value(lambda e: sinou((e, e)).system(0.3), "damping", 0.001, 0.2, tolerance=1e-6)
     assert float(found["unstable"]) < float(found["stable"])
     assert sinou_limit((float(found["value"]),) * 2) == pytest.approx(0.3, rel=1e-5)
@@ -116,7 +116,7 @@ def test_bad_arguments(call, message):
     assert "\n" not in str(error.value)
 
 
-def test_modes_left_out_of_what_is_followed_still_count():
+def test_untracked_modes_still_count():
     loci = st.root_loci(hoffmann_at, "friction", np.linspace(0.5, 1.0, 6), highest=1e-3)
     assert loci.sizes["mode"] == 0
     assert loci["unstable_modes"].values.tolist() == [0, 0, 0, 1, 1, 1]
@@ -139,7 +139,7 @@ def test_labels_of_critical_values_do_not_cover_each_other():
     assert [text.get_horizontalalignment() for text in above.texts] == ["left", "left", "left", "right"]
 
 
-def test_what_is_no_root_loci_is_told():
+def test_other_datasets_are_refused():
     with pytest.raises(ValueError, match="loci must be the result of root_loci"):
         plot.root_loci(st.critical_value(hoffmann_at, "friction", 0.5, 1.0))
     with pytest.raises(ValueError, match="loci must be a Dataset"):

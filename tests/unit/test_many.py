@@ -1,4 +1,4 @@
-"""Many runs at once give what each gives alone."""
+"""Many runs at once give the results of each run alone."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def squeals(count: int) -> list[st.System]:
 
 
 def assert_like(run: xr.Dataset, alone: xr.Dataset, tolerance: float) -> None:
-    """The same record but for round-off, relative to the largest value of the same unit."""
+    """The same record up to round-off, relative to the largest value of the same unit."""
     assert run.attrs["ended"] == alone.attrs["ended"]
     assert run.sizes == alone.sizes
     recorded = [name for name in alone if not str(name).startswith("state_")]
@@ -51,7 +51,7 @@ def assert_like(run: xr.Dataset, alone: xr.Dataset, tolerance: float) -> None:
 
 
 def test_runs_side_by_side_are_those_alone():
-    """Eight systems of one kind in one vector, ten in one and two alone: the same but for the order of sums."""
+    """Eight systems of one kind in one vector, ten in one and two alone: the same up to the order of sums."""
     systems = squeals(10)
     together = st.simulate_many(systems, 400 * STEP, workers=1, **WORDS)
     for run, system in zip(together, systems, strict=True):
@@ -84,7 +84,7 @@ def test_every_drive_side_by_side(name):
 
 
 def test_a_run_that_ends_leaves_the_others_alone():
-    """Thrown along the track at other speeds: some leave it, one cannot be believed, the rest goes on."""
+    """Thrown along the track at different speeds: some leave it, one fails, the others continue."""
     system = CASES["stable"]()
     rod = system.slider
     speeds = (0.0, 60.0, 80.0, -40.0, 0.1)
@@ -99,7 +99,7 @@ def test_a_run_that_ends_leaves_the_others_alone():
         assert_like(run, st.simulate(one, 0.02, **WORDS), 1e-6)
 
 
-def test_order_and_number_of_workers_do_not_show():
+def test_order_and_number_of_workers_do_not_matter():
     systems = [*squeals(5), CASES["judder"](), *squeals(9)[5:], SYSTEMS["frozen contact"][0]()]
     first = st.simulate_many(systems, 100 * STEP, workers=1, **WORDS)
     second = st.simulate_many(systems, 100 * STEP, workers=3, **WORDS)
@@ -137,7 +137,7 @@ def test_a_failure_ends_all():
 
 
 def test_errors_may_take_the_place_of_results():
-    """What is no system, overlaps at the start or cannot be reduced; the others are as without them."""
+    """Other objects, overlaps at the start, bodies that cannot be reduced; the other runs are not affected."""
     good = squeals(6)
     overlap = overlapping()
     seen = []
@@ -200,7 +200,7 @@ def test_bad_arguments_are_named(change, message):
         st.simulate_many(**({"systems": squeals(1), "duration": 1e-3} | change))
 
 
-def test_no_system_is_no_record():
+def test_no_systems_give_no_records():
     assert st.simulate_many([], 1.0) == []
 
 
@@ -212,7 +212,7 @@ def test_without_a_gpu_the_error_says_what_is_missing():
 
 @pytest.mark.parametrize("still_first", [True, False])
 def test_what_varies_in_time_beside_what_does_not(still_first):
-    """Forces that are constant, rise and swing; belts that stand and move: in one vector."""
+    """Constant, rising and oscillating forces; belts at rest and in motion: in one vector."""
     mass = st.PointMass(1.0)
     histories = (st.Constant(), st.Ramp(1e-3), st.Harmonic(100.0), st.Constant())
     belts = (0.0, 0.02, 0.03, 0.0)
@@ -229,7 +229,7 @@ def test_what_varies_in_time_beside_what_does_not(still_first):
 
 
 def test_probes_of_a_run_that_ended_long_before_the_others():
-    """Its last samples are completed from its own last value, not from what the others marched on."""
+    """Its last samples are completed from its own last value, not from the continued march of the others."""
     system = CASES["stable"]()
     speeds = (0.0, 60.0, 0.2, 0.1, 0.3)
     systems = [st.System(system.contact, [*system.drives, st.InitialVelocity(system.slider, x=v)]) for v in speeds]
@@ -255,7 +255,7 @@ def test_an_error_names_the_system():
         st.simulate_many([*systems[:2], 5], 1e-3)
 
 
-def test_a_step_found_for_all_is_not_held_against_one():
+def test_a_common_step_is_not_an_error_of_one_system():
     mass = st.PointMass(1.0)
     free = st.System(st.PointContact(mass.centre, st.RigidTrack()), [st.Gravity()])
     first, second = st.simulate_many([free, CASES["stable"]()], 1e-6, sample_rate=2e7)

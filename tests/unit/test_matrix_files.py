@@ -1,4 +1,4 @@
-"""Files of matrices: what is written comes back, every format gives the same body, bad files are named in one line."""
+"""Files of matrices: written files are read back, every format gives the same body, bad files give one line."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ MASS, STIFFNESS = beam_matrices()
 DAMPING = 3.0 * MASS + 1e-7 * STIFFNESS
 TRANSLATION = np.tile(np.eye(3)[:2], ELEMENTS + 1)
 PENALISED = STIFFNESS.copy()
-# The root clamped as Abaqus does it.
+# The root clamped as in Abaqus.
 PENALISED[range(SIZE - 3, SIZE), range(SIZE - 3, SIZE)] = 1e36
 
 
@@ -248,11 +248,11 @@ def test_a_full_file_that_is_not_symmetric_is_refused(tmp_path):
         ReducedBody.read(**paths, points=TIP)
 
 
-# What is refused.
+# Refused files.
 
 
 def one_matrix(tmp_path, content):
-    """Read a file as the mass of a body whose stiffness is in order."""
+    """Read a file as the mass of a body with a valid stiffness."""
     path = tmp_path / "mass.mtx"
     path.write_bytes(content.encode() if isinstance(content, str) else content)
     stiffness = abaqus_coordinate(tmp_path / "stiffness.mtx", np.eye(3))
@@ -287,8 +287,8 @@ TEXTS = {
     "nan number": ("nan 1 5.0\n", "line 1 must be 'row column value', got 'nan 1 5.0'"),
     "row zero": ("0 1 5.0\n", "rows and columns must be numbered from 1, got 0"),
     "bad dof": ("1,-2,1,-2,5.0\n", "degrees of freedom of a node must be numbered from 0 to 1048575"),
-    "twice": ("1 1 5.0\n2 2 5.0\n1 1 5.0\n", r"each entry must stand once (assembled matrices), got two at 1, 1"),
-    "twice labels": ("1,2,1,2,5.0\n1,2,1,2,6.0\n", r"each entry must stand once .*, got two at (1, 2), (1, 2)"),
+    "twice": ("1 1 5.0\n2 2 5.0\n1 1 5.0\n", r"each entry must occur once (assembled matrices), got two at 1, 1"),
+    "twice labels": ("1,2,1,2,5.0\n1,2,1,2,6.0\n", r"each entry must occur once .*, got two at (1, 2), (1, 2)"),
     "market header": ("%%MatrixMarket tensor\n1 1 1\n", ""),
     "market cut": (MARKET + "3 3 3\n1 1 1.0\n", "it must hold 3 entries, as its header says, it holds 1"),
     "market cut to its header": (MARKET + "3 3 3\n", "it must hold 3 entries, as its header says, it holds none"),
@@ -329,7 +329,7 @@ def test_market_files_are_refused_wherever_they_are_cut_within_a_word(tmp_path):
                 one_matrix(tmp_path, text[:end])
 
 
-def test_rows_that_nobody_names_are_refused_before_there_is_room_for_them(tmp_path):
+def test_unnamed_rows_are_refused_before_memory_is_allocated(tmp_path):
     path = tmp_path / "m.txt"
     path.write_text("1 1 1.0\n1000000000 1000000000 1.0\n")
     tracemalloc.start()

@@ -1,4 +1,4 @@
-"""Matrices as CalculiX, Nastran and Ansys write them: a chain whose frequencies are known, and what is refused."""
+"""Matrices of CalculiX, Nastran and Ansys: a chain with known frequencies, and refused files."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ BLOCKS = np.kron(np.array([[2.5, 0.0, -1.25], [0.0, 3.0, 0.5], [-1.25, 0.5, 4.0]
 
 
 def check_chain(body, rtol=1e-6):
-    """The frequencies of a chain that is held at one end, and how far its free end gives way to a force."""
+    """The frequencies of a chain held at one end, and the static displacement of its free end under a force."""
     order = np.arange(1, SIZE + 1)
     wanted = np.sqrt(SPRING / MASS) / np.pi * np.sin((2 * order - 1) * np.pi / (2 * (2 * SIZE + 1)))
     modes, trace = body.modes(), body.trace("end")
@@ -91,7 +91,7 @@ def test_nastran_cards(fields, form, kind, tmp_path):
     check_chain(ReducedBody.read(tmp_path / "b.pch", points=END, damping=0.01), rtol)
 
 
-def test_a_card_that_goes_on_is_one_column(tmp_path):
+def test_a_continued_card_is_one_column(tmp_path):
     """From the lines of a deck: numbers without the letter of their exponent, remarks, another card behind."""
     text = """SOL 103
 DMIG    KAAX           0       6       1       0                       2
@@ -163,7 +163,7 @@ def test_ansys_harwell_boeing(kind, across, right_hand_side, tmp_path):
 
 @pytest.mark.parametrize("ending", [".mapping", ".mmf.mapping"])
 def test_ansys_matrix_market_with_one_mapping(ending, tmp_path):
-    """What HBMAT says of the rows of one matrix holds for all of them."""
+    """The rows of one matrix from HBMAT are those of all matrices."""
     files = {role: tmp_path / f"{role}.mmf" for role in MATRICES}
     for role, path in files.items():
         with open(path, "wb") as file:
@@ -173,7 +173,7 @@ def test_ansys_matrix_market_with_one_mapping(ending, tmp_path):
 
 
 def test_scipy_reads_the_harwell_boeing_files_of_these_tests(tmp_path):
-    """Those that it reads: without a right-hand side."""
+    """Those that SciPy supports: without a right-hand side."""
     written(
         tmp_path, {"k.rsa": formats.harwell_boeing(BLOCKS, "RUA", 3, False).replace("D+", "E+").replace("D-", "E-")}
     )
@@ -205,7 +205,7 @@ BAD_DECKS = {
     "no.inp": ("*HEADING\n", "it holds no nodes"),
     "word.inp": ("*NODE\n1, 0, x, 0\n", "line 2 must be the number of a node and its coordinates, got '1, 0, x, 0'"),
     "many.inp": ("*NODE\n1, 0, 0, 0, 0\n", "line 2 must be 'node, x, y, z', got '1, 0, 0, 0, 0'"),
-    "twice.inp": ("*NODE\n1, 0\n1, 1\n", "each node must have another number"),
+    "twice.inp": ("*NODE\n1, 0\n1, 1\n", "nodes must have different numbers"),
     "made.inp": ("*NODE\n1, 0\n9, 1\n*NGEN\n1, 9\n", "line 4 must be of nodes that are all written out here, got"),
     "other.bdf": ("GRID,1,3,0.,0.,0.\n", "line 1 must be a GRID in the basic coordinate system, got 'GRID,1,3,0"),
     "cut.bdf": ("GRID*                  1\n", "line 2 must be the rest of the card, the file ends before"),
@@ -214,7 +214,7 @@ BAD_DECKS = {
 
 
 @pytest.mark.parametrize("deck", list(BAD_DECKS))
-def test_decks_that_are_wrong_are_named_in_one_line(deck, tmp_path):
+def test_bad_decks_are_reported_in_one_line(deck, tmp_path):
     content, message = BAD_DECKS[deck]
     written(calculix(tmp_path), {deck: content})
     with pytest.raises(ValueError) as caught:
@@ -223,7 +223,7 @@ def test_decks_that_are_wrong_are_named_in_one_line(deck, tmp_path):
     assert "\n" not in str(caught.value)
 
 
-# What is refused.
+# Refused files.
 
 
 def refused(files, points=END, **words):
@@ -259,7 +259,7 @@ OF_CALCULIX = {
 
 
 @pytest.mark.parametrize(("change", "message"), OF_CALCULIX.values(), ids=OF_CALCULIX)
-def test_calculix_that_is_wrong_is_told_in_one_line(change, message, tmp_path):
+def test_bad_calculix_files_are_reported_in_one_line(change, message, tmp_path):
     calculix(tmp_path, **change)
     assert message in refused({"path": tmp_path / "job.sti"})
 
@@ -297,13 +297,13 @@ OF_CARDS = {
     "cut": (CARDS + "DMIG,KAAX\n", "must be 'DMIG, name, node, dof, , node, dof, value', got 'DMIG,KAAX'"),
     "twice": (
         CARDS + "DMIG,MAAX,9,1,,9,1,1.0\n",
-        "each entry must stand once (assembled matrices), got two at (9, 1), (9, 1)",
+        "each entry must occur once (assembled matrices), got two at (9, 1), (9, 1)",
     ),
 }
 
 
 @pytest.mark.parametrize(("content", "message"), OF_CARDS.values(), ids=OF_CARDS)
-def test_cards_that_are_wrong_are_told_in_one_line(content, message, tmp_path):
+def test_bad_cards_are_reported_in_one_line(content, message, tmp_path):
     written(tmp_path, {"b.pch": content})
     assert message in refused({"path": tmp_path / "b.pch"})
 
@@ -352,7 +352,7 @@ OF_OUTPUT4 = {
 
 
 @pytest.mark.parametrize(("content", "message"), OF_OUTPUT4.values(), ids=OF_OUTPUT4)
-def test_output4_that_is_wrong_is_told_in_one_line(content, message, tmp_path):
+def test_bad_output4_files_are_reported_in_one_line(content, message, tmp_path):
     written(tmp_path, {"b.op4": content})
     assert message in refused({"path": tmp_path / "b.op4"}, {"end": (5, None)})
 
@@ -397,7 +397,7 @@ OF_ANSYS = {
 
 
 @pytest.mark.parametrize(("change", "message"), OF_ANSYS.values(), ids=OF_ANSYS)
-def test_ansys_that_is_wrong_is_told_in_one_line(change, message, tmp_path):
+def test_bad_ansys_files_are_reported_in_one_line(change, message, tmp_path):
     contents = {"stiffness.matrix": RSA, "mass.matrix": formats.harwell_boeing(MATRICES["mass"])}
     contents |= {f"{role}.mapping": formats.mapping(LABELS) for role in ("mass", "stiffness")}
     written(tmp_path, contents | change)
@@ -413,12 +413,12 @@ def test_matrices_of_two_sizes_are_refused(tmp_path):
 @pytest.mark.parametrize(
     ("ending", "words"), [("full", "write its matrices with HBMAT"), ("op2", "as OUTPUT4 or DMIG")]
 )
-def test_binary_files_that_are_not_read_say_what_is(ending, words, tmp_path):
+def test_unsupported_binary_files_name_supported_ones(ending, words, tmp_path):
     written(tmp_path, {f"b.{ending}": bytes(100)})
     assert words in refused({"path": tmp_path / f"b.{ending}"})
 
 
-def test_what_files_beside_do_not_fit(tmp_path):
+def test_mismatched_companion_files_are_refused(tmp_path):
     calculix(tmp_path)
     held = {"path": tmp_path / "body.npz"}
     ReducedBody(MATRICES["mass"], MATRICES["stiffness"], {"end": (5, None)}).save(held["path"])
@@ -449,7 +449,7 @@ POINTS = {
 
 
 @pytest.mark.parametrize(("point", "message"), POINTS.values(), ids=POINTS)
-def test_points_that_are_not_there(point, message, tmp_path):
+def test_missing_points_are_refused(point, message, tmp_path):
     written(calculix(tmp_path), {"deck.inp": DECKS["deck.inp"]})
     assert refused({"path": tmp_path / "job.sti"}, {"a": point}, mesh=tmp_path / "deck.inp").startswith(message)
 

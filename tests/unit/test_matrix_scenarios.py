@@ -26,7 +26,7 @@ def scenario(folder, keys, points):
 
 
 def files_in(folder):
-    """Write all there is into a folder of its own, from which the scenario does not name it."""
+    """Write all files into a separate folder, which the scenario does not name."""
     held = folder / "model"
     held.mkdir()
     contents = {f"{role}.matrix": formats.harwell_boeing(matrix) for role, matrix in MATRICES.items()}
@@ -88,13 +88,13 @@ WRONG = {
 
 
 @pytest.mark.parametrize(("keys", "points", "message"), WRONG.values(), ids=WRONG)
-def test_what_is_wrong_is_named(keys, points, message, tmp_path):
+def test_errors_are_named(keys, points, message, tmp_path):
     files_in(tmp_path)
     with pytest.raises((ValueError, OSError), match=message):
         st.load_scenario(scenario(tmp_path, keys, points))
 
 
-def test_a_text_from_elsewhere_names_no_deck():
+def test_a_text_from_elsewhere_may_not_name_a_deck():
     from stridula.scenarios.read import tables_of_text
 
     text = f'[bodies.chain]\nkind = "reduced"\nmesh = "/etc/passwd"\n{REST}'

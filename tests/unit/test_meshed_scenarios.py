@@ -67,7 +67,7 @@ def loaded(tables: dict, folder: Path) -> st.Scenario:
 
 
 def told(make, *arguments) -> str:
-    """Return what is wrong, of which each problem is one line."""
+    """Return the problems, each of one line."""
     with pytest.raises(st.ScenarioError) as caught:
         make(*arguments)
     assert "\n" not in str(caught.value)
@@ -92,7 +92,7 @@ def write_squares(path: Path) -> None:
 
 
 def pin_on_disc() -> st.System:
-    """Return the shipped rig as one writes it in Python."""
+    """Return the shipped rig as written in Python."""
     normal = (0.0697564737441253, 0.9975640502598242, 0.0)
     places = 0.0025 * np.arange(5)
     radii = [0.157, 0.1595, 0.162, 0.1645, 0.167]
@@ -138,7 +138,7 @@ def test_the_pin_on_disc_is_the_one_written_in_python():
 
 @pytest.mark.parametrize("name", ["pin-on-disc", "pad-on-disc", "brake"])
 def test_bodies_that_touch_stand_where_they_touch(name):
-    """As pictures show them, within the rounding of angles."""
+    """As drawn in pictures, within the rounding of angles."""
     for contact in st.load_scenario(name).system.contacts:
         tip, touched = (end.body.place(end.position) for end in (contact.tip, contact.touched_point))
         np.testing.assert_allclose(tip, touched, atol=2e-6)
@@ -187,7 +187,7 @@ def test_the_pad_on_disc_is_the_one_written_in_python():
     )
     turn = math.radians(20.0)
     assert pad.mesh == st.SolidMesh.sector((0.08, 0.12), (-turn, turn), 0.015, (2, 4, 2), axis="y")
-    # Every foot is where the disc has the point that it touches, and is dragged as the disc turns.
+    # Every foot is at the point of the disc that it touches, and is dragged by the turning disc.
     for contact in case.system.contacts:
         there = disc.place(contact.track.position)
         np.testing.assert_allclose(pad.mesh.nodes[pad.points[contact.tip.position]], there, atol=1e-6)
@@ -269,7 +269,7 @@ def profile_point(profile) -> np.ndarray:
     return mesh.nodes[mesh.cells[0]].mean(axis=0)
 
 
-def test_all_that_a_body_of_revolution_has(tmp_path):
+def test_every_key_of_a_body_of_revolution(tmp_path):
     disc = {
         "profile": PROFILES["rectangles"][0],
         "material": {"hat": METAL, "disc": {"young": "110 GPa", "density": "7.1 g/cm3", "poisson": 0.28}},
@@ -356,7 +356,7 @@ def test_every_mesh_is_the_one_written_in_python(table, mesh, tmp_path):
     assert case.system.slider == st.SolidBody(mesh, STEEL, {"p": 3}, damping=0.01, residual_flexibility=False, name="a")
 
 
-def test_all_that_a_solid_has(tmp_path):
+def test_every_key_of_a_solid(tmp_path):
     mesh = MESHES["elements"]
     body = {
         "mesh": mesh[0],
@@ -411,7 +411,7 @@ def write_cube(path: Path) -> None:
 
 
 def of_files(folder: Path) -> Path:
-    """Write a scenario whose bodies are from files in a folder of its own, and one elsewhere that builds on it."""
+    """Write a scenario whose bodies are from files in a separate folder, and one elsewhere based on it."""
     (folder / "sub").mkdir()
     write_squares(folder / "sub" / "ring.inp")
     write_cube(folder / "sub" / "cube.inp")
@@ -496,13 +496,13 @@ def test_a_sweep_takes_meshes_along_and_reads_them_once(tmp_path):
     assert np.isfinite(cutoffs.mean_force.values).all()
 
 
-def test_a_text_names_no_meshes():
+def test_a_text_may_not_name_meshes():
     text = '[bodies.a]\nkind = "solid"\nmesh = { shape = "file", file = "/etc/passwd" }\n'
     with pytest.raises(st.ScenarioError, match=r"bodies must not name files in a text, got '/etc/passwd'"):
         tables_of_text(text, "text")
 
 
-# What is wrong.
+# Errors.
 
 BAD_DISCS = {
     "a rectangle inside out": ({"profile.outer": "2 cm"}, "bodies.disc.profile.outer must be above inner, 0.03 m, got"),
@@ -596,7 +596,7 @@ BAD_DISCS = {
 
 
 @pytest.mark.parametrize(("changes", "message"), BAD_DISCS.values(), ids=BAD_DISCS)
-def test_a_bad_body_of_revolution_says_what_is_wrong(changes, message, tmp_path, monkeypatch):
+def test_errors_of_a_body_of_revolution_are_explained(changes, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     disc = {"profile": dict(RING), "material": METAL, "cutoff": 5e3}
     for key, value in changes.items():
@@ -658,7 +658,7 @@ BAD_SOLIDS = {
 
 
 @pytest.mark.parametrize(("changes", "message"), BAD_SOLIDS.values(), ids=BAD_SOLIDS)
-def test_a_bad_solid_says_what_is_wrong(changes, message, tmp_path, monkeypatch):
+def test_errors_of_a_solid_are_explained(changes, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     body = {"mesh": CUBE, "materials": METAL, "points": {"p": 0}, **changes}
     assert message in told(with_solid, body, tmp_path)
@@ -679,7 +679,7 @@ def test_a_bad_solid_says_what_is_wrong(changes, message, tmp_path, monkeypatch)
         (None, "contacts.0.track.point must be given: a position, as the body has no named points"),
     ],
 )
-def test_a_point_that_is_not_there_is_told(point, message, tmp_path):
+def test_a_missing_point_is_reported(point, message, tmp_path):
     disc = {"profile": RING, "material": METAL, "cutoff": 5e3}
     on_disc(disc, tmp_path)
     tables = read_tables(tmp_path / "case.toml")

@@ -1,4 +1,4 @@
-"""Damping ratios mode by mode: bodies, scenarios, records, and what sound takes from a plate."""
+"""Damping ratios mode by mode: bodies, scenarios, records, and radiation damping of a plate."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mode shapes: what panels show is how modes move the body, and what they say is its frequency and damping."""
+"""Mode shapes: panels show the displacements of modes, with frequency and damping."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_a_plate_is_coloured_by_its_normal_and_has_arrows_in_its_plane():
     assert len(plot.mode_shapes(PLATE, [bending]).axes) == 1, "arrows have no bar of colours"
 
 
-def test_the_lowest_six_that_vibrate_are_drawn_where_nobody_says_which():
+def test_the_lowest_six_that_vibrate_are_drawn_by_default():
     free = st.FiniteElementBeam(STEEL, st.Circle(0.01), 0.3, root_support="free")
     titles = [axes.get_title() for axes in panels(plot.mode_shapes(free))]
     assert [title.split(",")[0] for title in titles] == [f"mode {k}" for k in range(3, 9)]
@@ -127,6 +127,6 @@ def test_modes_that_grow_come_first():
         (BEAM, {"theory": 1}, "theory must go with a System"),
     ],
 )
-def test_what_has_no_shapes_is_refused(what, options, message):
+def test_bad_arguments_are_refused(what, options, message):
     with pytest.raises(ValueError, match=message):
         plot.mode_shapes(what, **options)

@@ -1,4 +1,4 @@
-"""Figures: what is drawn is what the law and the record say."""
+"""Figures: the drawing agrees with the law and the record."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_rate_and_state_goes_over_decades():
     assert decade[1] - decade[0] == pytest.approx(-0.005 * np.log(10.0), rel=1e-2)
 
 
-def test_velocities_are_those_asked_for():
+def test_velocities_are_those_requested():
     _, (backward, forward, *rest) = lines(plot.friction(LAWS["Coulomb, 0.4"], [3.0, 1.0, 2.0]))
     assert list(forward[:, 0]) == [1.0, 2.0, 3.0]
     assert backward.size == 0
@@ -79,7 +79,7 @@ def test_velocities_are_those_asked_for():
         (AGEING, [-1.0, 1.0], "velocities must be at least 2 above 0 for rate and state"),
     ],
 )
-def test_what_cannot_be_drawn_is_told(law, velocities, message):
+def test_bad_arguments_are_refused(law, velocities, message):
     with pytest.raises(ValueError, match=message):
         plot.friction(law, velocities)
 
@@ -139,14 +139,14 @@ def test_one_line_has_no_legend():
         lambda run: analysis.peak_level(run["normal_force"]),
     ],
 )
-def test_measures_ask_which_contact(two, measure):
+def test_measures_need_one_contact(two, measure):
     with pytest.raises(ValueError, match=r"must be of one contact, got those of 'never', 'always': choose one with "):
         measure(two)
     measure(two.sel(contact="always"))
 
 
 def a_sweep(regimes, grows=None, kinds=None, x=(0.1, 0.2, 0.3), y=(10.0, 20.0)):
-    """Return what a sweep over friction and angle would, made by hand."""
+    """Return a result like that of a sweep over friction and angle, made by hand."""
     shape = (len(x), len(y))
     grows = np.zeros(shape) if grows is None else np.asarray(grows, dtype=float)
     kinds = np.full(shape, "sliding", dtype=object) if kinds is None else np.array(kinds, dtype=object)
@@ -196,11 +196,11 @@ def test_bounds_of_linear_theory_lie_between_cells():
     assert {(0.15, 5.0), (0.15, 15.0)} <= corners
     assert {x for x, _ in corners} == {0.15}
     assert growth.get_linewidths()[0] > sliding.get_linewidths()[0]
-    # Elsewhere the bound of sliding lies: it turns where held begins.
+    # Elsewhere it is the bound of sliding, beyond which the contact is held.
     assert (0.15, 25.0) in {(round(x, 6), round(y, 6)) for x, y in sliding.get_paths()[0].vertices.tolist()}
 
 
-def test_a_mode_that_grows_everywhere_is_said_and_has_contours():
+def test_a_mode_that_grows_everywhere_is_noted_and_has_contours():
     axes, _, words = drawn_map(a_sweep(["squeal"] * 6, grows=np.ones((3, 2))))
     assert words == ["squeal (6)", "linear theory: a mode grows everywhere", "its growth rate"]
     assert {text.get_text() for text in axes.texts} == {"20 /s", "30 /s", "50 /s"}
@@ -231,6 +231,6 @@ def test_numbers_are_drawn_in_rising_order_and_words_as_they_come():
         (a_sweep(["squeal"] * 6).isel(angle=0), r"got {'friction': 3}"),
     ],
 )
-def test_what_is_no_map_is_told(found, message):
+def test_other_datasets_are_refused_as_maps(found, message):
     with pytest.raises(ValueError, match=message):
         plot.regime_map(found)

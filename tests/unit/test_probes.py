@@ -1,4 +1,4 @@
-"""Probes: what they refuse, their labels, directions and reactions."""
+"""Probes: refused arguments, labels, directions and reactions."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def test_a_direction_in_space_is_kept_in_a_scenario():
     again = st.load_scenario(run)
     np.testing.assert_array_equal(again.simulate().velocity, run.velocity)
     assert again.probes == (probe,)
-    with pytest.raises(st.ArgumentError, match=r"^direction must have nothing along z on a body in the plane"):
+    with pytest.raises(st.ArgumentError, match=r"^direction must have no component along z on a body in the plane"):
         st.Velocity(ROD.tip, (1.0, 0.0, 1e-9))
 
 

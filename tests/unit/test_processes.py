@@ -1,4 +1,4 @@
-"""Parts of a sweep in other processes: the same to the last bit, and what becomes of those that end."""
+"""Parts of a sweep in other processes: the same to the last bit, also if processes end."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_another_process_gives_the_same_to_the_last_bit(helper_of, source, measu
     assert repr(helper.outcomes(points[:4])) == repr(expected[:4]) or len(points) < 8
 
 
-def test_a_process_that_is_gone_is_told(helper_of):
+def test_a_lost_process_is_reported(helper_of):
     task, points = task_of(measures=("mean_force",))
     helper = helper_of(task)
     helper._process.kill()
@@ -72,7 +72,7 @@ def test_a_process_that_is_gone_is_told(helper_of):
     assert helper.outcomes(points) is None
 
 
-def test_what_no_other_process_can_import_stays_in_threads(monkeypatch):
+def test_functions_that_cannot_be_imported_stay_in_threads(monkeypatch):
     assert portable(task_of()[0]) is not None
     assert portable(task_of(squeal)[0]) is not None
     assert portable(task_of(measures=({"peak": lambda run: 0.0},))[0]) is None
@@ -95,7 +95,7 @@ def test_a_process_that_cannot_import_a_function_is_never_ready_and_says_nothing
 
 
 def test_processes_begin_once_threads_wait_for_each_other(monkeypatch):
-    """They take over from the threads, which give the same; those of no use are ended with the sweep."""
+    """They replace the threads, with the same results; idle ones are ended with the sweep."""
     begun = []
     monkeypatch.setattr(processes, "Helper", lambda asked, ready: begun.append(Eager(ready)) or begun[-1])
     monkeypatch.setattr(processes, "COST", -1e9)
@@ -109,7 +109,7 @@ def test_processes_begin_once_threads_wait_for_each_other(monkeypatch):
 
 
 class Eager:
-    """A process that is ready at once, and gone when it is asked."""
+    """A process that is ready at once, and gone when it is used."""
 
     def __init__(self, ready):
         self.ended = False
@@ -130,7 +130,7 @@ def test_one_worker_needs_no_process():
     helpers.close()
 
 
-def test_where_no_process_can_begin_threads_go_on(monkeypatch):
+def test_threads_continue_if_no_process_can_start(monkeypatch):
     def fails(asked, ready):
         raise OSError("no more processes")
 

@@ -1,4 +1,4 @@
-"""Profiles of bodies of revolution: what they hold, files of meshes, and wrong ones refused in one line."""
+"""Profiles of bodies of revolution: content, mesh files, and refusals in one line."""
 
 from __future__ import annotations
 
@@ -51,13 +51,13 @@ def test_small_cells_grow_step_by_step():
         (st.LineProfile([(0.1, 0.0), (0.1, 0.2), (0.2, 0.4)], [0.01, 0.004, 0.008]), 0.004),
     ],
 )
-def test_the_thinnest_part_is_known(profile, thinnest):
-    """Straight in from a side that leans a little it is somewhat farther; cells here are coarse."""
+def test_the_thinnest_part_is_measured(profile, thinnest):
+    """Measured normal to a slightly inclined side it is somewhat larger; cells here are coarse."""
     found = profile.mesh(lambda thickness, region: 0.01).thinnest
     assert found == pytest.approx(thinnest, rel=0.03)
 
 
-def test_places_are_where_they_say():
+def test_named_places_have_their_coordinates():
     mesh = BODY.mesh
     assert mesh.place_names[:4] == ("inner", "outer", "bottom", "top")
     for place, r, z in (
@@ -162,7 +162,7 @@ def test_cells_of_higher_degree_and_mixed_ones_are_read(tmp_path):
     assert len(profile.nodes) == 6
     assert profile.region_names == ("body",)
     assert profile.mesh(lambda thickness, region: 1.0).volumes.sum() == pytest.approx(math.pi * 4.0)
-    with pytest.raises(st.ArgumentError, match="plane must be the plane of the mesh"):
+    with pytest.raises(st.ArgumentError, match="plane must be the plane in which the mesh"):
         st.MeshProfile.read(path)
 
 
@@ -182,7 +182,7 @@ def test_files_that_hold_no_profile_are_refused(tmp_path, capsys, name, text, wo
     assert capsys.readouterr() == ("", "")
 
 
-def test_a_file_that_is_not_there_is_said():
+def test_a_missing_file_is_reported():
     with pytest.raises(FileNotFoundError, match=r"cannot read 'nowhere\.msh'"):
         st.MeshProfile.read("nowhere.msh")
 
@@ -239,7 +239,7 @@ def body(**changes):
         (body(held=[3]), "held.0. must be a Held"),
         (lambda: st.Held("inner", "x"), "directions.0. must be one of r, theta, z"),
         (lambda: st.Held((0, 1)), "place must be the name of a place or a box"),
-        (lambda: st.Held(((1, 0), (0, 1))), "place must have ranges that do not fall"),
+        (lambda: st.Held(((1, 0), (0, 1))), "place must have ranges whose first number is not above the second"),
         (body(material={"disc": STEEL}), "material must be given for all regions, disc, hat, got none for hat"),
         (body(material={"disc": STEEL, "hub": STEEL}), "material must be one of disc, hat"),
         (body(material=7800.0), "material must be a Material"),
@@ -264,7 +264,7 @@ def body(**changes):
         ),
     ],
 )
-def test_wrong_ones_are_refused_in_one_line(make, words):
+def test_bad_profiles_are_refused_in_one_line(make, words):
     with pytest.raises(st.ArgumentError, match=words) as refused:
         make()
     assert "\n" not in str(refused.value)
@@ -281,7 +281,7 @@ def test_nothing_but_numbers_is_taken_for_a_mesh():
             st.MeshProfile(nodes, cells)
 
 
-def test_units_of_finite_element_programs_are_doubted():
+def test_units_of_finite_element_programs_raise_doubts():
     """Millimetres, tonnes and MPa: right frequencies in millimetres, wrong ones in metres."""
     tonnes = "did you mean t/mm3, as finite-element programs have it?"
     odd = replace(BODY, material={"disc": IRON, "hat": st.Material(2.1e11, 7.8e-9)})

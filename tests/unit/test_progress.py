@@ -1,4 +1,4 @@
-"""Bars that Python asks for: in terminals, notebooks and logs, with rich and without."""
+"""Progress bars from Python: in terminals, notebooks and logs, with and without rich."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ ASKED = {
 
 
 @pytest.mark.parametrize("name", ASKED)
-def test_whoever_asks_is_shown_how_far_it_is(name, capsys):
+def test_progress_is_shown_when_requested(name, capsys):
     ASKED[name]()
     assert capsys.readouterr().err == ""
     ASKED[name](progress=True)
@@ -62,14 +62,14 @@ def test_a_log_has_a_line_for_each_tenth(capsys):
     assert "left" not in lines[-1]
 
 
-def test_a_command_says_nothing_in_a_log(capsys):
+def test_a_command_writes_nothing_to_a_log(capsys):
     with bars.bar("squeal") as show:
         show(1.0, 2.0, "half")
     assert capsys.readouterr().err == ""
 
 
 def shown_in_one_line(capsys) -> list[str]:
-    """Return what stands in the one line of a bar, one after the other."""
+    """Return the successive texts in the one line of a bar."""
     with bars.bar("squeal", asked=True) as show:
         show(1.0, 2.0, "half of it all")
         show(2.0, 2.0, "all")

@@ -1,4 +1,4 @@
-"""Files around the package: workflows, forms, recipe and container say what Makefile and pyproject.toml say."""
+"""Files around the package: workflows, forms, recipe and container agree with Makefile and pyproject.toml."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FORMS = sorted((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml"))
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 OLDEST = runpy.run_path(str(ROOT / "packaging" / "oldest.py"))
 TARGETS = set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
-# What conda calls otherwise.
+# Packages with other names in conda.
 OF_CONDA = {"soundfile": "pysoundfile", "matplotlib": "matplotlib-base"}
 
 
@@ -28,7 +28,7 @@ def read(path: Path) -> dict:
 
 
 def refused(command: str) -> list[str]:
-    """Return the parts of a command that are neither the whole check nor make something that there is."""
+    """Return the parts of a command that are neither the whole check nor existing targets of make."""
     parts = [part.split() for part in command.split("&&")]
     good = [words == [".ci/run"] or (words[0] == "make" and words[1] in TARGETS) for words in parts]
     return [" ".join(words) for words, is_good in zip(parts, good, strict=True) if not is_good]
@@ -55,7 +55,7 @@ def test_every_python_of_the_classifiers_is_tested():
 
 
 @pytest.mark.parametrize("path", FORMS, ids=lambda path: path.name)
-def test_forms_ask_for_something(path):
+def test_forms_have_labelled_fields(path):
     form = read(path)
     assert {"name", "description", "body"} <= set(form)
     assert all(field["attributes"]["label"] and field["id"] for field in form["body"])
@@ -82,7 +82,7 @@ def test_the_recipe_requires_what_the_project_does():
     assert recipe["about"]["license"] == PROJECT["license"]
 
 
-def test_oldest_releases_are_the_floors():
+def test_oldest_releases_are_the_lower_bounds():
     assert OLDEST["oldest"](["numpy>=2.0", "stridula[cli]", "tomli-w>=1.0"]) == ["numpy==2.0", "tomli-w==1.0"]
     with pytest.raises(SystemExit, match="a dependency must be name>=release, got 'numpy<3'"):
         OLDEST["oldest"](["numpy<3"])

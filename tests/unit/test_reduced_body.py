@@ -1,4 +1,4 @@
-"""Bodies given by matrices and point masses: modes against closed forms, damping of every kind, what they refuse."""
+"""Bodies given by matrices and point masses: modes against closed forms, all kinds of damping, refused arguments."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def test_modal_coordinates_bring_a_displacement_back():
     np.testing.assert_allclose(body.shapes.T @ m @ body.shapes, np.eye(27), atol=1e-10)
 
 
-def test_rigid_modes_are_told_from_elastic_ones_with_room_on_both_sides():
+def test_rigid_modes_are_separated_from_elastic_ones_with_margins():
     """The zero of a free beam stays far below the bound; the first mode of a fine clamped beam far above it."""
     for mass in ("consistent", "lumped"):
         for elements in (1, 5, 60):
@@ -251,7 +251,7 @@ def test_bodies_are_equal_and_hashed_by_content():
     assert body != "body"
 
 
-def test_bodies_cannot_be_changed_and_do_not_follow_their_arguments():
+def test_bodies_are_immutable_and_copy_their_arguments():
     mass, points = M2.copy(), dict(POINTS)
     body = pair(mass=mass, points=points, damping=0.1 * M2, translation=[[1, 1], [0, 0]])
     mass[0, 0] = 9.0
@@ -282,7 +282,7 @@ def test_small_asymmetry_is_averaged_away():
     assert body.stiffness[0, 1] == pytest.approx(-C + 5e-7, rel=1e-15)
 
 
-# What is refused.
+# Refused arguments.
 
 LARGE = scipy.sparse.eye_array(10**6, format="csr")
 BAD = {
@@ -440,7 +440,7 @@ def bodies() -> list[Body]:
     return [FiniteElementBeam(**words), ModalBeam(**words), PointMass(1.0), pair(translation=[[1, 1], [0, 0]])]
 
 
-def test_every_body_says_what_the_protocol_asks_for():
+def test_every_body_implements_the_protocol():
     for body, position in zip(bodies(), (0.2, 0.2, "centre", "a"), strict=True):
         assert body.trace(position).shape == (2, body.modes().count)
         assert BodyPoint(body, position).position == position

@@ -89,7 +89,7 @@ def test_slow_swings_and_drifts_of_sliding_are_stable():
     assert named(record(always(SLIDING), 1.0 + SECOND**2))[0] == "stable sliding"
 
 
-def test_held_is_sticking_and_open_has_left():
+def test_a_held_contact_sticks_and_an_open_one_has_left():
     assert named(record(always(STICKING), 1.0 + tone(20.0))) == ("sticking", 1.0)
     assert named(record(always(SEPARATED), 0.0)) == ("off the track", 1.0)
 
@@ -119,7 +119,7 @@ def test_five_slow_cycles_are_periodic():
     assert found.frequency == pytest.approx(0.27, rel=1e-3)
 
 
-def test_one_slip_is_stick_slip_unless_next_to_nothing():
+def test_one_slip_is_stick_slip_unless_negligible():
     status = always(STICKING)
     status[10_000:13_000] = SLIDING
     found = analysis.regime(record(status))
@@ -162,7 +162,7 @@ def test_random_impacts_are_judder():
     assert found.impact_rate == pytest.approx(400.0, abs=20.0)
 
 
-def test_a_run_off_its_track_is_that_whatever_came_before():
+def test_a_run_off_its_track_has_that_regime():
     found = analysis.regime(record(always(SLIDING), 1.0 + tone(), ended="off the track"))
     assert (found.regime, found.confidence) == ("off the track", 1.0)
     assert found.tonality > 0.99
@@ -180,7 +180,7 @@ def test_bursts_of_noise_are_not_squeal():
 
 @pytest.mark.parametrize(("share", "expected"), [(0.4, "judder"), (0.6, "squeal")])
 def test_a_tone_must_carry_half_of_the_power(share, expected):
-    """Tone in noise, of which half is left at the reduced rate of 10 kHz, less what lies below 300 Hz."""
+    """Tone in noise, half of which remains at the reduced rate of 10 kHz, without the part below 300 Hz."""
     heard = 0.5 * (1.0 - 300.0 / 5000.0)
     sound = tone(1000.0, np.sqrt(2.0 * share)) + np.sqrt((1.0 - share) / heard) * NOISE
     name, confidence = named(record(*bursts(0.5 * sound)))
@@ -213,7 +213,7 @@ def test_ringing_that_dies_away_is_not_squeal_and_growth_is():
 
 
 def test_the_start_does_not_decide():
-    """Bursts in the first tenth; bursts for most of the time, and then a rest; bursts for half of it."""
+    """Bursts in the first tenth; bursts for most of the time, followed by rest; bursts for half of it."""
     status, force = bursts(tone(900.0, 0.8), until=0.1)
     assert named(record(status, force)) == ("sticking", 1.0)
     status, force = bursts(tone(900.0, 0.8), until=0.85)
@@ -231,7 +231,7 @@ def test_the_start_may_be_chosen():
     assert analysis.regime(run, start=0.4).separated == 0.0
 
 
-# What lies within the sample intervals.
+# Events within the sample intervals.
 
 
 @pytest.mark.parametrize(("rate", "expected"), [(900.0, "squeal"), (100.0, "stick-slip")])
@@ -251,7 +251,7 @@ def test_landings_within_the_intervals_are_counted():
     assert found.frequency == found.impact_rate == pytest.approx(800.0)
 
 
-def test_damping_betrays_a_vibration_that_the_samples_hide():
+def test_damping_reveals_a_vibration_hidden_by_the_samples():
     """It slides at every step with equal forces; a steady state would lose nothing to damping."""
     run = record(always(SLIDING, 1000), rate=1000.0, lost=0.1)
     found = analysis.regime(run)
@@ -316,10 +316,10 @@ def test_clockwork_is_stick_slip_however_short_its_slips_or_its_sticks(slip, sti
     found = analysis.regime(run)
     assert found.regime == "stick-slip"
     assert found.confidence > 0.75
-    # It lets go and is caught within a step h each, v h and D (w h)² away, with D = v stick / 2 and w < pi / slip.
+    # It slips and sticks within a step h each, v h and D (w h)² away, with D = v stick / 2 and w < pi / slip.
     late = 4e-5 + 0.5 * stick * (np.pi / slip * 1e-5) ** 2
     assert 1.0 / found.frequency == pytest.approx(slip + stick, abs=late)
-    # The record has one slip more or less.
+    # The record has one slip more or fewer.
     assert found.slip_rate == pytest.approx(1.0 / (slip + stick), abs=1.0 / 1.8)
     assert found.periodicity > 0.99
 
@@ -327,11 +327,11 @@ def test_clockwork_is_stick_slip_however_short_its_slips_or_its_sticks(slip, sti
 @pytest.mark.parametrize("rate", RATES)
 @pytest.mark.parametrize("leaf", [400.0, 1000.0, 3000.0])
 def test_a_hinge_that_creaks_and_rings_while_it_sticks(leaf, rate):
-    """Its leaf rings on through the stick phases: more than half of what is heard may be that tone."""
+    """Its leaf continues to ring in the stick phases: that tone may have more than half of the audible power."""
     run = st.simulate(clockwork(1e-3, 30e-3, fall=0.6, leaf=leaf), 1.5, step=1e-5, sample_rate=rate, probes=[])
     found = analysis.regime(run)
     assert found.regime == "stick-slip"
-    # The leaf adds to the mass and kicks back: a period within a fifth of that without it.
+    # The leaf adds mass and inertia forces: a period within a fifth of that without it.
     assert found.frequency == pytest.approx(1.0 / 31e-3, rel=0.2)
     assert found.slip_rate == pytest.approx(float(found.frequency), abs=1.0 / 1.35)
     assert found.sticking > 0.95
@@ -340,7 +340,7 @@ def test_a_hinge_that_creaks_and_rings_while_it_sticks(leaf, rate):
 @pytest.mark.parametrize("rate", RATES)
 @pytest.mark.parametrize(("frequency", "modes"), [(150.0, 1), (196.0, 8)])
 def test_a_bowed_mode_and_a_bowed_string(frequency, modes, rate):
-    """A string of some modes, bowed at 0.13 of its length; the bow has a little mass of its own."""
+    """A string of some modes, bowed at 0.13 of its length; the bow has a small mass."""
     number = np.arange(1, modes + 1)
     angular = np.append(2.0 * np.pi * frequency * number, 0.0)
     rows = np.zeros((2, modes + 1))
@@ -353,7 +353,7 @@ def test_a_bowed_mode_and_a_bowed_string(frequency, modes, rate):
     system = st.System(bow, [st.Force(string.at("bow"), y=-2.0)])
     found = analysis.regime(st.simulate(system, 1.0, step=1e-5, sample_rate=rate, probes=[]))
     assert found.regime == "stick-slip"
-    # The bow holds the string back: a little flat, never sharp.
+    # The bow delays the string: a little flat, never sharp.
     assert 0.4 * frequency < found.frequency < frequency
     assert found.slip_rate == pytest.approx(float(found.frequency), abs=2.5)
 
@@ -365,7 +365,7 @@ def shares(status, factor):
 
 @pytest.mark.parametrize("rate", RATES)
 def test_noise_of_a_step_is_neither_slip_nor_stick(rate):
-    """A stick of one step at each reversal of sliding; a slip of two steps, across a sample, now and then in a stop."""
+    """A stick of one step at each reversal of sliding; occasional slips of two steps, across a sample, in a stop."""
     step, fine = 1e-5, np.arange(100_000)
     factor = round(1.0 / (rate * step))
     slides = np.where(fine % 2500 == 0, STICKING, SLIDING)
@@ -416,7 +416,7 @@ def test_slips_as_fast_as_a_tone_are_one_vibration_in_bursts_too(every, expected
     assert named(run)[0] == expected
 
 
-def test_half_of_the_time_is_in_the_lengths_that_prevail():
+def test_the_prevailing_length_covers_half_of_the_time():
     assert prevailing(np.array([1.0] * 20 + [30.0])) == 30.0
     assert prevailing(np.array([1.0] * 40 + [30.0])) == 1.0
     assert prevailing(np.zeros(0)) == np.inf
@@ -492,7 +492,7 @@ def test_the_last_rest_must_outlast_all_before():
     assert last_rest(np.array([2, 2])) == 0
 
 
-def test_the_weight_between_stops_falls_to_nothing_at_their_edges():
+def test_the_weight_between_stops_falls_to_zero_at_their_edges():
     sticking = np.repeat([1.0, 0.0, 1.0], [100, 300, 100])
     weight = between_stops(sticking, 21)
     assert weight[:100].max() < 0.05
@@ -541,9 +541,9 @@ EXPECTED = {
 }
 
 
-# Of the tone that landings leave; of relaxations, near the paper's 2.5 kHz; of the theory's cycle on the belt.
+# Tones from landings; from relaxations, near the paper's 2.5 kHz; from the theoretical cycle on the belt.
 FREQUENCY = {"squeal": (320.0, 335.0), "strong-pressure": (2650.0, 2750.0), "belt": (0.273, 0.274)}
-# Under strong pressure the tone of the relaxations carries some half of the audible power: squeal or judder by little.
+# Under strong pressure the tone of the relaxations has about half of the audible power, between squeal and judder.
 LEAST_CONFIDENCE = {"strong-pressure": 0.5}
 
 
@@ -560,7 +560,7 @@ def test_shipped_cases(name):
 
 
 def test_the_regime_does_not_depend_on_the_sample_rate():
-    """Of one and the same march: the forces are means, and those of a lower rate means of them."""
+    """For the same march: the forces are means, and those of a lower rate are means of them."""
     case = st.load_scenario("strong-pressure")
     runs = [st.simulate(case.system, 0.6, step=5e-6, sample_rate=rate, probes=[]) for rate in (10e3, 20e3, 50e3, 100e3)]
     first, *others = (analysis.regime_of(run) for run in runs)

@@ -17,7 +17,7 @@ RATE = 20e3
 SEPARATED, STICKING, SLIDING = range(3)
 SECOND = np.arange(1, round(RATE) + 1) / RATE
 TONE = np.sin(2.0 * np.pi * 1000.0 * SECOND)
-# What a contact repeated changes: landings add up.
+# Difference made by repeating a contact: landings add up.
 ADDS_UP = {"impact_rate"}
 
 
@@ -70,7 +70,7 @@ CONTACTS = {
 
 @pytest.mark.parametrize("surface", [(), ("pad", "pad", "pad")], ids=["points", "surface"])
 @pytest.mark.parametrize("name", CONTACTS)
-def test_alike_contacts_have_the_regime_of_one(name, surface):
+def test_equal_contacts_have_the_regime_of_one(name, surface):
     status, normal = CONTACTS[name]
     one, three = record((status, normal)), record(*[(status, normal)] * 3, surfaces=surface)
     found, expected = analysis.regime(three), analysis.regime(one.sel(contact="contact 1"))
@@ -81,7 +81,7 @@ def test_alike_contacts_have_the_regime_of_one(name, surface):
     assert analysis.regime(one).identical(expected)
 
 
-def test_what_cancels_in_the_sum_of_points_is_heard_of_contacts_and_not_of_a_surface():
+def test_cancelling_forces_count_between_contacts_and_not_within_a_surface():
     """Two pads on both sides of a disc; or two points of one face that share a load to and fro."""
     sides = [(SLIDING, 1.0 + 0.5 * TONE), (SLIDING, 1.0 - 0.5 * TONE)]
     found = analysis.regime(record(*sides))
@@ -91,8 +91,8 @@ def test_what_cancels_in_the_sum_of_points_is_heard_of_contacts_and_not_of_a_sur
     assert named(record(*sides, surfaces=("pad", "other pad"))) == "squeal"
 
 
-def test_each_contact_weighs_as_it_carries():
-    """A heavy foot slides and a light one hammers; one that hangs in the air says nothing."""
+def test_each_contact_is_weighted_by_its_load():
+    """A heavy foot slides and a light one hammers; one without load does not count."""
     light = hammering()
     run = record((SLIDING, 9.75), light, (SEPARATED, 0.0))
     found = analysis.regime(run)
@@ -135,7 +135,7 @@ def test_slips_are_those_of_most_of_the_load():
     assert found.slip_rate == pytest.approx(20.0, abs=1.2)
     assert found.frequency == pytest.approx(20.0, rel=1e-3)
     assert analysis.regime(record(*contacts).sel(contact="contact 1")).slip_rate == pytest.approx(40.0, abs=1.2)
-    # Where three of the five do, all do.
+    # If three of the five slip, all do.
     contacts[2] = contacts[0]
     assert analysis.regime(record(*contacts)).slip_rate == pytest.approx(40.0, abs=1.2)
 
@@ -190,7 +190,7 @@ def test_two_equal_contacts_only_stick_together(carried):
     np.testing.assert_array_equal(together(share, np.array(carried)), [0.0, 1.0, 0.25])
 
 
-def test_most_of_the_load_speaks_for_all():
+def test_most_of_the_load_decides():
     share = np.array([[1.0, 1.0, 1.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0, 0.4]])
     np.testing.assert_array_equal(together(share, np.full(5, 0.2)), [1.0, 0.4])
     np.testing.assert_array_equal(together(share, np.array([0.6, 0.1, 0.1, 0.1, 0.1])), [1.0, 1.0])
@@ -224,7 +224,7 @@ def test_named_measures_of_several_contacts():
 
 
 def belts(count: int) -> st.System:
-    """Equal blocks on springs, each on a belt of its own: one and the same motion."""
+    """Equal blocks on springs, each on a separate belt: all with the same motion."""
     contacts, drives, springs = [], [], []
     for number in range(count):
         block = st.PointMass(1.0, name=f"block {number}")
@@ -248,7 +248,7 @@ def test_three_belts_are_one_belt():
         assert found[word] == pytest.approx(float(expected[word]), rel=1e-6)
 
 
-# Of the pin the mode that grows, near 2273 Hz; of the pad that of the disc at 1719 Hz; both shifted by the cycle.
+# The growing mode of the pin, near 2273 Hz; for the pad that of the disc at 1719 Hz; both shifted by the cycle.
 RIGS = {"pin-on-disc": (2240.0, 2340.0), "pad-on-disc": (1690.0, 1725.0)}
 
 
@@ -262,7 +262,7 @@ def test_rigs_squeal_though_some_of_their_nodes_only_hammer(name):
     assert low < found.frequency < high
 
 
-def test_points_of_a_face_know_their_surface(tmp_path):
+def test_points_of_a_face_have_the_name_of_their_surface(tmp_path):
     block = st.SolidBody(
         st.SolidMesh.block((0.02, 0.01, 0.01), (2, 1, 1)),
         st.Material(5e9, 2500.0, 0.3),

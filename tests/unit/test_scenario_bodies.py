@@ -135,7 +135,7 @@ duration = "1 ms"
 """
 
 
-def test_a_plate_takes_what_stands_at_the_top_and_survives_provenance(tmp_path):
+def test_a_plate_takes_values_at_the_top_and_survives_provenance(tmp_path):
     (tmp_path / "plate.toml").write_text(PLATE, encoding="utf-8")
     case = st.load_scenario(tmp_path / "plate.toml")
     steel, line = st.Material(2.1e11, 7800.0, 0.28), st.Line((0.05, 0.04), math.radians(30.0))
@@ -199,7 +199,7 @@ def test_a_plate_moves_in_its_plane_where_its_table_says_so(tmp_path):
         ("2 kHz", "20 Hz", "cutoff must leave at least one mode (first at"),
     ],
 )
-def test_a_bad_plate_says_what_is_wrong(old, new, message, tmp_path):
+def test_errors_of_a_plate_are_explained(old, new, message, tmp_path):
     assert old in PLATE
     assert message in "\n".join(problems(PLATE.replace(old, new), tmp_path))
 
@@ -232,7 +232,7 @@ def test_a_friction_at_the_top_is_that_of_every_contact_without_its_own(tmp_path
     own = TWO_CONTACTS.replace('gap = "1 mm"', 'friction = {law = "static-kinetic", static = 0.5, kinetic = 0.4}')
     path.write_text(own)
     assert frictions(path) == [st.Coulomb(0.3), st.StaticKinetic(0.5, 0.4)]
-    # A part of a law is that of the top with what is its own; a bare number is a law of its own.
+    # A partial law is merged with that at the top; a bare number is a complete law.
     stribeck = TWO_CONTACTS.replace(
         "friction = 0.3", 'friction = {law = "stribeck", static = 0.5, kinetic = 0.3, velocity = 0.1}'
     )
@@ -253,7 +253,7 @@ def test_a_friction_set_at_the_top_is_that_of_all_contacts(tmp_path):
     assert frictions(path, **{"contacts.1.friction.coefficient": 0.9}) == [st.Coulomb(0.3), st.Coulomb(0.9)]
     (found,) = problems(TWO_CONTACTS.replace("friction = 0.3", 'friction = "x"'), tmp_path)
     assert found == "friction.coefficient must be a number, got 'x'"
-    # Without one at the top it must be said which contact is meant.
+    # Without one at the top the contact must be named.
     (found,) = problems(TWO_CONTACTS.replace("friction = 0.3", ""), tmp_path, {"coefficient": 0.5})
     assert "contacts.0.friction.coefficient" in found
     assert "contacts.1.friction.coefficient" in found

@@ -1,4 +1,4 @@
-"""Messages about scenarios that cannot be."""
+"""Messages about invalid scenarios."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def test_a_base_cannot_lead_back_to_itself(tmp_path):
     assert "must not refer back to the scenario itself" in problems('base = "other.toml"', tmp_path)[0]
 
 
-def test_unknown_keys_and_bad_values_are_told_at_once():
+def test_unknown_keys_and_bad_values_are_reported_together():
     with pytest.raises(st.ScenarioError) as caught:
         st.load_scenario("squeal", {"foo": 1, "slider.mass": "lump", "friction": "3 m"})
     found = caught.value.problems
@@ -77,7 +77,9 @@ def test_bodies_out_of_range_are_named(tmp_path):
     reduced = 'kind = "reduced"\nmass = [[1e-300]]\nstiffness = [[1e10]]\npoints = {a = {x = 0}}'
     text = BELT.replace('kind = "point mass"\nmass = 1.0', reduced)
     (found,) = problems(text, tmp_path)
-    assert found.startswith("bodies.m.stiffness must be of a size that mass can carry, got up to 1e+10 N/m on masses")
+    assert found.startswith(
+        "bodies.m.stiffness must be of an ordinary size relative to mass, got up to 1e+10 N/m on masses"
+    )
     with pytest.raises(st.ScenarioError, match=r"must hold numbers of ordinary size: its modes overflow"):
         st.load_scenario("squeal", {"density": 1e-320})
 
@@ -87,7 +89,7 @@ def test_a_step_above_the_limit_names_its_key():
         st.load_scenario("squeal", {"step": 1e-3}).simulate()
 
 
-def test_every_problem_of_a_file_is_told(tmp_path):
+def test_every_problem_of_a_file_is_reported(tmp_path):
     found = problems(
         'base = "squeal"\n[slider]\nlenght = 3\nangle = nan\n[material]\nyoung = -1\n[[drives]]\nkind = "forc"\n'
         '[[drives]]\nkind = "force"\naxial = "x {y}"\n[simulation]\nprobes = [{quantity = "speed"}]\n',
@@ -137,7 +139,7 @@ def test_every_problem_of_a_file_is_told(tmp_path):
         ("[contact]\nat = 1\n", "slider must be given"),
     ],
 )
-def test_a_bad_file_says_what_is_wrong(text, message, tmp_path):
+def test_errors_of_a_file_are_explained(text, message, tmp_path):
     assert any(message in problem for problem in problems(text, tmp_path))
 
 
@@ -150,7 +152,7 @@ def test_tables_nested_thousands_deep_are_refused_in_one_line(text, tmp_path):
     assert len(problem) < 300
 
 
-def test_what_is_no_scenario_file_is_refused(tmp_path):
+def test_other_files_are_refused_as_scenarios(tmp_path):
     (tmp_path / "binary.toml").write_bytes(b"\xff\x00\x80")
     (tmp_path / "cut.nc").write_bytes(b"\x89HDF\r\n\x1a\nrest")
     for name, message in [
@@ -189,7 +191,7 @@ contact_solve = {sweeps = 0}
 """
 
 
-def test_every_problem_of_bodies_and_contacts_is_told(tmp_path):
+def test_every_problem_of_bodies_and_contacts_is_reported(tmp_path):
     found = "\n".join(problems(TWO, tmp_path))
     for words in (
         "density must be one of the known keys",
@@ -250,11 +252,11 @@ def test_every_problem_of_bodies_and_contacts_is_told(tmp_path):
         (MASS_ON_FLOOR + '[[simulation.probes]]\nquantity = "velocity"\nbody = "b"\n', "probes.0.body must be one of "),
     ],
 )
-def test_a_bad_file_of_bodies_says_what_is_wrong(text, message, tmp_path):
+def test_errors_of_a_file_of_bodies_are_explained(text, message, tmp_path):
     assert any(message in problem for problem in problems(text, tmp_path))
 
 
-def test_a_damaged_packed_matrix_is_told(tmp_path):
+def test_a_damaged_packed_matrix_is_reported(tmp_path):
     text = MASS_ON_FLOOR.replace("mass = 1", 'stiffness = [[1]]\npoints = {p = {x = 0}}\nmass = "float64 1x1 eJx"')
     found = problems(text.replace("point mass", "reduced"), tmp_path)
-    assert found == ("bodies.a.mass must be a whole packed array, as records have them, got 'float64 1x1 eJx'",)
+    assert found == ("bodies.a.mass must be a complete packed array, as in records, got 'float64 1x1 eJx'",)

@@ -164,7 +164,7 @@ def test_a_record_is_a_scenario():
 
 
 @pytest.mark.parametrize("given", [3, None, b"squeal", ["squeal"], {"title": "x"}, xr.Dataset()])
-def test_what_is_no_name_no_path_and_no_record_is_refused(given):
+def test_bad_sources_of_scenarios_are_refused(given):
     with pytest.raises(st.ScenarioError, match=r"^scenario must be a ") as caught:
         st.load_scenario(given)
     assert "\n" not in str(caught.value)
@@ -223,7 +223,7 @@ def test_every_reduced_body_survives_provenance(body, tmp_path):
 
 
 def general() -> tuple[st.System, tuple[object, ...]]:
-    """Return a system with all that a pair of beams has not, and its probes."""
+    """Return a system with all features that a pair of beams lacks, and its probes."""
     section = st.Circle(0.01)
     rod = st.FiniteElementBeam(STEEL, section, 0.3, angle=0.3, elements=3, cutoff=8e3, root_support="free")
     plate = st.ModalBeam(STEEL, section, 0.8, bending_modes=5, axial_modes=2, name="plate")
@@ -279,7 +279,7 @@ def test_a_record_of_many_bodies_runs_again_bit_by_bit(tmp_path):
     xr.testing.assert_equal(repeated.drop_attrs(), record.drop_attrs())
 
 
-def test_a_record_of_many_bodies_is_shown_as_the_same_scenario_and_gone_on_from(tmp_path):
+def test_a_record_of_many_bodies_is_shown_as_the_same_scenario_and_continued(tmp_path):
     system, probes = general()
     record = st.simulate(system, 1e-3, probes=probes)
     st.save(record, tmp_path / "run.nc")
@@ -298,7 +298,7 @@ def test_matrices_written_out_are_the_same_as_their_file(tmp_path):
     body.save(tmp_path / "pad.npz")
     rest = '[[contacts]]\ntip = {body = "pad", point = "tip"}\ntrack = {kind = "rigid"}\n[simulation]\nduration = 1.0\n'
     (tmp_path / "file.toml").write_text(f'[bodies.pad]\nkind = "reduced"\nfile = "pad.npz"\n{rest}')
-    # Rows in full, as one would write them by hand.
+    # Rows in full, as written by hand.
     rows = {name: getattr(body, name).tolist() for name in ("mass", "stiffness")}
     points = "\n".join(f'"{name}" = {value.tolist()}' for name, value in body.points.items())
     (tmp_path / "rows.toml").write_text(
@@ -316,7 +316,7 @@ def test_matrices_written_out_are_the_same_as_their_file(tmp_path):
     assert systems[0].slider == body
 
 
-def test_equal_bodies_are_told_apart_by_their_names_in_the_file(tmp_path):
+def test_equal_bodies_are_distinguished_by_their_names_in_the_file(tmp_path):
     (tmp_path / "case.toml").write_text(
         '[bodies]\nslider = {kind = "point mass", mass = 1}\ntrack = {kind = "point mass", mass = 1}\n'
         '[[contacts]]\ntip = {body = "slider"}\ntrack = {kind = "point", body = "track"}\n'

@@ -31,7 +31,7 @@ def test_all_cases_share_one_set_of_beams():
 
 
 @pytest.mark.parametrize("name", CASES + MASSES + PLATES + MESHED + STRINGS)
-def test_what_is_shown_loads_as_the_same_scenario(name, tmp_path):
+def test_shown_scenarios_load_as_the_same_scenario(name, tmp_path):
     path = tmp_path / "copy.toml"
     path.write_text(st.scenario_text(name), encoding="utf-8")
     assert "base =" not in path.read_text(encoding="utf-8")
@@ -109,7 +109,7 @@ def test_another_shape_starts_a_section_afresh():
         ({"gap": -1e-6}, "contact.gap must be 0 or above, got -1e-06"),
     ],
 )
-def test_a_change_that_cannot_be_says_why(overrides, message):
+def test_impossible_changes_are_explained(overrides, message):
     with pytest.raises(st.ScenarioError) as caught:
         st.load_scenario("squeal", overrides)
     assert message in str(caught.value)

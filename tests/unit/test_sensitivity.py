@@ -1,4 +1,4 @@
-"""Sensitivity: closed forms, scipy's own indices, probabilities with intervals, what fails or never varies."""
+"""Sensitivity: closed forms, scipy's own indices, probabilities with intervals, failed and constant outputs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def ishigami(x, y, z):
 
 @pytest.fixture
 def computed(monkeypatch):
-    """Let a function of the points stand for a sweep; it returns values over the points by name."""
+    """Replace a sweep by a function of the points, which returns values over the points by name."""
 
     def put(function):
         def sweep(scenario, points, measures, **options):
@@ -95,7 +95,7 @@ def test_probabilities_have_wilsons_interval_and_count_independent_draws_only(co
     expected = np.array([middle - half, middle + half]) / (1 + z**2 / n)
     np.testing.assert_allclose(squeal["probability_interval"], expected)
     assert float(found["probability"].sum()) == pytest.approx(1.0)
-    # The only parameter makes all of it.
+    # The only parameter causes all of the variance.
     assert float(found["first_order"].sel(output="is squeal", parameter="a")) == pytest.approx(1.0, abs=0.1)
     assert np.isnan(found["first_order"].sel(output="is judder")).all()
 
@@ -131,7 +131,7 @@ def test_samples_with_a_run_that_failed_are_left_out_and_counted(computed):
     ],
     ids=["constant", "NaN", "too few"],
 )
-def test_what_never_varies_or_hardly_is_has_no_indices_and_no_warning(computed, outputs):
+def test_outputs_that_hardly_vary_have_no_indices_and_no_warning(computed, outputs):
     computed(outputs)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -140,7 +140,7 @@ def test_what_never_varies_or_hardly_is_has_no_indices_and_no_warning(computed, 
     assert np.isnan(found["total_order_interval"]).all()
 
 
-def test_what_varies_in_one_sample_only_gives_no_warning(computed):
+def test_an_output_that_varies_in_one_sample_gives_no_warning(computed):
     computed(lambda a: {"f": (np.arange(a.size) == 3).astype(float)})
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -71,7 +71,7 @@ def test_two_halves_are_the_whole(name, ratio, scheme):
     assert_same([first, second], whole)
 
 
-def test_a_run_goes_on_from_a_saved_file(tmp_path):
+def test_a_run_continues_from_a_saved_file(tmp_path):
     system = CASES["squeal"]()
     words = {"step": STEP, "sample_rate": 50e3, "probes": probed(system)}
     whole = st.simulate(system, 0.01, **words)
@@ -85,7 +85,7 @@ def test_a_run_goes_on_from_a_saved_file(tmp_path):
 
 
 def test_short_pieces_are_the_whole():
-    """Pieces shorter than the memory of the low-pass, 7 samples: it must be handed on whole."""
+    """Pieces shorter than the memory of the low-pass, 7 samples: it must be passed on completely."""
     system = pair(shaken, mu=0.7)
     words = {"step": STEP, "sample_rate": 1 / (4 * STEP), "probes": probed(system)}
     whole = st.simulate(system, 20 * 4 * STEP, **words)
@@ -95,8 +95,8 @@ def test_short_pieces_are_the_whole():
     assert_same(pieces, whole)
 
 
-def test_chunks_do_not_show(monkeypatch):
-    """A run in small chunks is the run in one: memory stays that of the record."""
+def test_chunks_do_not_affect_the_result(monkeypatch):
+    """A run in small chunks equals that in one chunk; memory stays that of the record."""
     system = CASES["squeal"]()
     words = {"step": STEP, "sample_rate": 1 / (4 * STEP), "probes": probed(system)}
     whole = st.simulate(system, 0.02, **words)
@@ -146,7 +146,7 @@ def test_low_pass_stops_tones_above_half_the_rate_and_passes_those_below_a_quart
 
 
 def test_low_pass_harness_rejects_plain_picking():
-    """Negative control: every fifth value as it is lets a tone above half the sample rate through whole."""
+    """Negative control: every fifth value passes a tone above half the sample rate unchanged."""
     tone = np.cos(2 * np.pi * 0.7 / 5 * np.arange(2000))
     assert np.abs(tone[::5]).max() > 0.9
 
@@ -228,7 +228,7 @@ def test_a_tip_that_leaves_its_track_ends_the_run_there(ratio, scheme):
 
 @pytest.mark.parametrize("ratio", [1, 2, 10])
 def test_the_last_probe_sample_before_the_end_of_the_track_is_no_jump(ratio):
-    """What the low-pass lacks beyond the end is the last value, never zero: a root at 1 m/s stays on its line."""
+    """Beyond the end the low-pass uses the last value, not zero: a root at 1 m/s stays on its line."""
     system = pair(dragged(1.0, 0.5), mu=0.1, at=0.795)
     probes = [st.Displacement(system.slider.root, "x")]
     run = st.simulate(system, 0.02, step=STEP, sample_rate=1 / (ratio * STEP), probes=probes)
@@ -243,7 +243,7 @@ def test_off_the_track_at_the_left_end_too(scheme):
     assert 0 < run.contact_position.values[-1] < 1e-4
 
 
-def test_interruption_keeps_what_was_recorded_and_can_go_on():
+def test_an_interrupted_run_keeps_its_record_and_can_continue():
     """A Ctrl-C between chunks: the record so far, and its extension is the run that was not interrupted."""
     system = CASES["squeal"]()
     words = {"step": STEP, "sample_rate": 50e3, "probes": probed(system)}
@@ -264,7 +264,7 @@ def test_interruption_keeps_what_was_recorded_and_can_go_on():
 
 @pytest.fixture
 def ctrl_c():
-    """Python's own handler of SIGINT, whatever runs the tests."""
+    """Python's own handler of SIGINT, independent of the test runner."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield lambda: signal.raise_signal(signal.SIGINT)
     signal.signal(signal.SIGINT, before)
@@ -294,7 +294,7 @@ def test_ctrl_c_during_the_march_leaves_state_and_record_together(monkeypatch, c
     assert_same([first, second], whole)
 
 
-def test_a_state_that_is_no_longer_finite_is_said_with_the_record_kept():
+def test_a_state_that_is_not_finite_is_reported_with_the_record_kept():
     """A force of 1e200 N on the track, away from the slider, whose energy overflows: the run must end, not give NaN."""
     bar = track()
     late = st.Sampled((0.0, 1e-3, 2e-3), (0.0, 0.0, 1.0))
@@ -308,13 +308,13 @@ def test_a_state_that_is_no_longer_finite_is_said_with_the_record_kept():
 
 
 def test_a_march_that_diverges_does_not_pass_for_a_tip_off_its_track(monkeypatch):
-    """With the limit of the step out of the way the tip leaves [0, L] before anything overflows."""
+    """Without the limit of the step the tip leaves [0, L] before anything overflows."""
     monkeypatch.setattr(st.CentralDifference, "limit", lambda self, angular, damping: np.inf)
     with pytest.raises(st.Diverged):
         st.simulate(CASES["squeal"](), 0.2, scheme=st.CentralDifference(), step=2e-4, sample_rate=5e3)
 
 
-def test_watchers_see_the_time_go_on():
+def test_watchers_receive_rising_times():
     seen = []
     st.simulate(CASES["squeal"](), 0.5, step=STEP, watchers=[seen.append])
     times = [progress.time for progress in seen]
@@ -438,7 +438,7 @@ def test_a_start_of_another_run_is_refused(change):
     ],
 )
 def test_a_state_of_another_shape_is_refused(name, change, words):
-    """Compiled code would read beyond its end."""
+    """Otherwise compiled code would read beyond its end."""
     record = st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3)
     values = change(record[name].values)
     damaged = record.drop_vars(name).assign({name: ([f"axis{k}" for k in range(values.ndim)], values)})
@@ -498,7 +498,7 @@ def test_probe_on_another_body_is_refused():
         st.simulate(SYSTEM, 1e-3, probes=[st.Reaction(replace(SYSTEM.slider, length=0.4))])
 
 
-def test_a_run_goes_on_only_from_the_same_bodies_and_place():
+def test_a_run_continues_only_from_the_same_bodies_and_place():
     system = CASES["squeal"]()
     first = st.simulate(system, 1e-3, step=STEP)
     elsewhere = st.System(
@@ -528,14 +528,14 @@ def test_the_scenario_of_an_extension_runs_the_whole():
         ({"duration": 1.0, "watchers": 5}, r"^watchers must be a list of callables, got 5"),
     ],
 )
-def test_timing_that_cannot_be(words, message):
+def test_impossible_timings_are_refused(words, message):
     with pytest.raises(ValueError, match=message):
         st.simulate(SYSTEM, **words)
 
 
 @pytest.mark.parametrize("name", ["squeal", "squeal-on-plate"])
 def test_a_march_that_had_to_be_compiled_first_is_the_same(name, monkeypatch):
-    """It is compiled by a step of a copy, which leaves no trace in either march."""
+    """It is compiled by a step of a copy, which does not affect either march."""
     case = st.load_scenario(name, {"duration": "20 ms"})
     # The first of a process loads the kernel.
     _, warm = case.simulate(), case.simulate()
@@ -566,7 +566,7 @@ def pulled(history: st.Constant | st.Sampled, velocity: float = 0.01) -> st.Syst
 
 
 @BOTH
-def test_a_run_goes_on_at_another_velocity_from_where_the_tip_is(scheme):
+def test_a_run_continues_at_another_velocity_from_the_place_of_the_tip(scheme):
     """As a run whose velocity changes on the way, over one step."""
     words = {"scheme": scheme, "step": 2.5e-6, "sample_rate": 100e3}
     half = 0.04

@@ -1,4 +1,4 @@
-"""Solid bodies and their meshes: what is refused and how, points, faces, equality, other processes."""
+"""Solid bodies and their meshes: refusals, points, faces, equality, other processes."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_inverted_elements_are_counted():
     refused(lambda: parts(PAIR, nodes=PAIR.nodes * [1, 1, 0]), "2 of 2")
 
 
-def test_parts_that_do_not_hang_together_are_counted():
+def test_disconnected_parts_are_counted():
     far = PAIR.nodes + np.array([0.0, 0.0, 5.0])
     both = np.vstack([PAIR.nodes, far])
     elements = np.vstack([PAIR.elements, PAIR.elements + len(PAIR.nodes)])
@@ -57,7 +57,7 @@ def test_parts_that_hinge_on_an_edge_are_refused():
     elements = number.reshape(2, 8)[:, order]
     for cutoff in (None, 1e4):
         hinged = st.SolidBody(st.SolidMesh(both, elements, "hexahedron"), STEEL, cutoff=cutoff)
-        refused(hinged.modes, "mesh must hold together", "1 motions without stiffness")
+        refused(hinged.modes, "mesh must be rigidly connected", "1 motions without stiffness")
 
 
 def test_lonely_nodes_and_wrong_numbers_are_refused():
@@ -83,11 +83,11 @@ def test_nodes_in_the_middle_of_an_edge_are_shared():
     shared = np.intersect1d(elements[0, 8:], elements[1, 8:])[0]
     elements[1, elements[1] == shared] = len(PAIR.nodes)
     nodes = np.vstack([PAIR.nodes, PAIR.nodes[shared]])
-    refused(lambda: parts(PAIR, nodes=nodes, elements=elements, faces={}), "share the nodes in the middle")
+    refused(lambda: parts(PAIR, nodes=nodes, elements=elements, faces={}), "share the middle node")
 
 
 @pytest.mark.parametrize("density", [7.8e-9, 7.8e-6])
-def test_units_of_tonnes_and_millimetres_are_seen(density):
+def test_units_of_tonnes_and_millimetres_are_detected(density):
     steel = st.Material(210000.0, density)
     refused(lambda: st.SolidBody(CUBE, steel), "materials", "millimetres", "kg/m³")
 
@@ -103,7 +103,7 @@ def test_materials_cover_the_mesh_once():
     assert st.SolidBody(halves, {"one": STEEL, "other": STEEL}) != st.SolidBody(halves, STEEL)
 
 
-def test_what_is_fixed_is_known():
+def test_bad_fixed_faces_are_refused():
     refused(lambda: st.SolidBody(CUBE, STEEL, fixed=["lfet"]), "did you mean 'left'?")
     refused(lambda: st.SolidBody(CUBE, STEEL, fixed="left"), "fixed")
     refused(lambda: st.SolidBody(CUBE, STEEL, fixed={"left": "w"}), "directions of x, y and z")
@@ -159,18 +159,18 @@ def test_faces_are_kept_with_areas_and_normals():
     refused(lambda: body.face("rihgt"), "did you mean 'right'?")
 
 
-def test_linear_elements_get_middles_unless_they_shall_stay():
+def test_linear_elements_become_quadratic_unless_kept():
     corners = parts(PAIR, nodes=PAIR.nodes[:12], elements=PAIR.elements[:, :8], kind="hexahedron", faces=PAIR.faces)
     assert st.SolidBody(corners, STEEL).mesh == PAIR
     assert st.SolidBody(corners, STEEL, linear=True).mesh == corners
 
 
-def test_shapes_say_what_they_do_not_take():
+def test_bad_shapes_are_refused():
     refused(lambda: st.SolidMesh.block((1, 1), (1, 1, 1)), "lengths must be three numbers")
     refused(lambda: st.SolidMesh.block((1, 1, -1), (1, 1, 1)), "lengths[2]")
     refused(lambda: st.SolidMesh.block((1, 1, 1), (1, 1, 0)), "divisions[2]")
     refused(lambda: st.SolidMesh.sector((2, 1), (0, 1), 1, (1, 1, 1)), "radii must rise")
-    refused(lambda: st.SolidMesh.sector((1, 2), (0, 7), 1, (1, 1, 1)), "angles must rise by at most 2 pi")
+    refused(lambda: st.SolidMesh.sector((1, 2), (0, 7), 1, (1, 1, 1)), "angles must increase, by at most 2 pi in all")
     refused(lambda: st.SolidMesh.sector((1, 2), (0, 1), 1, (1, 1, 1), axis="r"), "axis")
     refused(lambda: st.SolidMesh.extrusion([[0, 0], [1, 0], [1, 1]], [[0, 1, 2]], 1, 1), "(elements, 4)")
     refused(lambda: st.SolidMesh.extrusion([[0, 0], [0, 1], [1, 1], [1, 0]], [[0, 1, 2, 3]], 1, 1), "Jacobian")
@@ -212,7 +212,7 @@ def test_bodies_are_compared_by_content_and_travel_with_their_modes():
 
 
 def test_modes_are_the_same_in_each_run():
-    """Of the search, which starts from random numbers: to the last bit in another process."""
+    """The search starts from random numbers: equal to the last bit in another process."""
     code = (
         "import stridula as st; mesh = st.SolidMesh.block((0.1, 0.03, 0.02), (6, 3, 2));"
         "modes = st.SolidBody(mesh, st.Material(2.1e11, 7800.0), cutoff=4e4).modes();"
@@ -255,7 +255,7 @@ def test_coincident_places_are_dissected_too():
 
 
 def test_other_libraries_are_taken_where_they_are(monkeypatch):
-    """The seam: the first that is installed makes the factors."""
+    """The first installed library factorises."""
     asked = []
 
     def fake(matrix):

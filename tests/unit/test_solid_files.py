@@ -183,7 +183,7 @@ def test_lengths_are_scaled(tmp_path):
 
 
 def test_elements_of_two_groups_stand_once_and_lonely_nodes_are_left_out(tmp_path):
-    """gmsh 2.2 writes an element once for each of its groups, and points of the drawing that no element has."""
+    """gmsh 2.2 writes an element once for each of its groups, and geometry points without elements."""
     mesh = mesh_of("tetra")
     text = gmsh_22(mesh)
     count = len(mesh.nodes)
@@ -224,7 +224,7 @@ def test_damaged_files_are_refused_in_one_line(tmp_path, name, text, words):
 
 
 def test_cut_files_are_refused_in_one_line(tmp_path):
-    """Whatever is left of a file: refused, or a mesh in which what is missing was no solid element."""
+    """A cut file is refused, or gives a mesh that lacks no solid element."""
     for write, ending in TEXTS.values():
         text = write(mesh_of("tetra10"))
         path = tmp_path / f"cut.{ending}"
@@ -250,7 +250,7 @@ def test_files_with_wrong_characters_are_read_or_refused_in_one_line(tmp_path, f
 
 
 def one_line_of(path):
-    """Return what is said of a file that is refused, None where it is read."""
+    """Return the message for a refused file, None if it is read."""
     try:
         st.SolidMesh.read(path)
     except (ValueError, OSError) as error:
@@ -258,7 +258,7 @@ def one_line_of(path):
     return None
 
 
-def test_a_file_that_is_not_there_is_said(tmp_path):
+def test_a_missing_file_is_reported(tmp_path):
     with pytest.raises(FileNotFoundError, match="cannot read"):
         st.SolidMesh.read(tmp_path / "none.msh")
 
@@ -329,7 +329,7 @@ def test_hexahedra_and_wedges_become_tetrahedra_that_fit(tmp_path, quadratic):
     )
     for name in ("clamp", "end"):
         assert mesh.face(name).area.sum() == pytest.approx(0.04 * 0.03, rel=1e-12)
-    # Faces that do not fit would lie on the surface, too.
+    # Mismatched faces would also lie on the surface.
     outer = st.SolidMesh(
         mesh.nodes, mesh.elements, mesh.kind, faces={"all": outer_faces(mesh.element_kind, mesh.elements)}
     )
@@ -393,7 +393,7 @@ def test_middles_of_curved_edges_stay(tmp_path):
     path = tmp_path / "bent.inp"
     path.write_text(mixed_deck(bent, blocks, {}))
     mesh = st.SolidMesh.read(path)
-    # Of second degree, as the shapes of faces and elements are: the middles of cuts lie where they should.
+    # Of second degree, like the shapes of faces and elements: the middles of cuts are correct.
     low = mesh.nodes[:, 1] - 2.0 * mesh.nodes[:, 0] ** 2
     assert low.min() > -1e-12
     assert low.max() < 0.04 + 1e-12

@@ -1,4 +1,4 @@
-"""Reduced bodies of sparse matrices that are too large to be made dense."""
+"""Reduced bodies of sparse matrices that are too large for dense ones."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ STIFF, HEAVY = 1e6, 1e-3
 
 
 def chain(held):
-    """Return mass and stiffness of a chain, its first mass held by a spring of its own or free."""
+    """Return mass and stiffness of a chain, its first mass held by another spring or free."""
     diagonal = np.full(SIZE, 2.0)
     diagonal[-1] = 1.0
     diagonal[0] = 2.0 if held else 1.0
@@ -41,14 +41,14 @@ def test_chains_have_the_frequencies_of_their_formula(held):
     expected = expected[expected <= 60.0]
     assert expected.size > 15
     found = modes.frequency[~modes.massless]
-    # Rounding of the largest squared frequency, seen at the least.
+    # Rounding relative to the largest squared frequency, at the smallest one.
     rounding = 64.0 * np.finfo(float).eps * 4.0 * STIFF / HEAVY / (4.0 * np.pi**2)
     np.testing.assert_allclose(found**2, expected**2, rtol=1e-12, atol=rounding)
     assert (found == 0.0).sum() == (0 if held else 1)
 
 
 def test_static_displacements_are_those_of_springs_in_a_row():
-    """A pull at the end stretches every spring; what the modes left out yield is in the residual shapes."""
+    """A pull at the end stretches every spring; residual shapes have the flexibility of the modes left out."""
     chained = body(True)
     modes = chained.modes()
     end, middle = chained.trace("end")[0], chained.trace("middle")[0]
@@ -82,7 +82,7 @@ def test_matrices_are_read_from_files(tmp_path):
     assert read.total_mass == pytest.approx(SIZE * HEAVY)
 
 
-def test_what_large_bodies_need_is_said(tmp_path):
+def test_requirements_of_large_bodies_are_reported(tmp_path):
     mass, stiffness = chain(True)
     for make, words in (
         (lambda: body(True, cutoff=None), "cutoff must be given for more than 4000"),

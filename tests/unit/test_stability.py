@@ -1,4 +1,4 @@
-"""Sliding stability against the formula written anew, its solvers against each other, verdicts, and bad arguments."""
+"""Sliding stability against an independent formula, solvers against each other, equilibria, bad arguments."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def exponents(found) -> np.ndarray:
 
 
 def assert_same(found, known, tolerance: float) -> None:
-    """Both hold the same exponents, whatever their order; of known ones those with negative frequency are left out."""
+    """Both have the same exponents in any order; known ones with negative frequency are left out."""
     known = known[known.imag >= 0.0]
     assert found.size == known.size
     distance = np.abs(found[:, None] - known)
@@ -113,7 +113,7 @@ def test_exponents_are_those_of_the_formula(seed, damping, count, sense):
 
 
 @pytest.mark.parametrize("share", [-0.4, 0.2, 0.0])
-def test_the_formula_tells_another_friction_apart(share):
+def test_the_formula_distinguishes_another_friction(share):
     """Negative control: the wrong sense, half the friction or none gives other numbers."""
     system, *known = two_bodies(1)
     found = exponents(st.sliding_stability(system, status="sliding"))
@@ -174,7 +174,7 @@ def loaded(load: float):
     motion = vibration(shape, find_equilibrium(shape, np.zeros(1)))
     np.testing.assert_allclose(motion.held[0], jacobian[-1, :-1], rtol=1e-4, atol=1e-4)
     np.testing.assert_allclose(motion.pushes[0], -jacobian[:-1, -1], rtol=1e-6, atol=1e-6)
-    # A bent or stretched track answers to the tip by what the load adds alone.
+    # A bent or stretched track has the terms of the load alone.
     for rows_of_track in (slice(size, size + 4), slice(size + 4, size + 6)):
         known = jacobian[rows_of_track, :size]
         np.testing.assert_allclose(motion.stiffness[rows_of_track, :size], known, atol=1e-3 * np.abs(known).max())
@@ -187,7 +187,7 @@ def loaded(load: float):
     return found, np.concatenate([known, -known])
 
 
-def test_a_load_adds_what_the_bent_track_does():
+def test_a_load_adds_the_effect_of_the_bent_track():
     found, known = loaded(2e4)
     assert_same(exponents(found), known, 1e-5 * np.abs(known).max())
     slider, track = rod(-30.0, elements=2), bar(bending_modes=4, axial_modes=2)
@@ -232,7 +232,7 @@ def test_a_large_body_is_solved_about_its_lowest_modes():
 
 
 def test_record():
-    """Names, units, shares of energy and shapes; shapes obey what contacts hold."""
+    """Names, units, shares of energy and shapes; shapes obey the constraints of contacts."""
     slider, track = rod(-45.0), bar()
     found = st.sliding_stability(pair(dragged(), 0.8, slider, track))
     assert found.attrs["equilibrium"] == "sliding"
@@ -242,7 +242,7 @@ def test_record():
     shape = found.mode_shape.sel(part="real").values + 1j * found.mode_shape.sel(part="imaginary").values
     np.testing.assert_allclose(np.linalg.norm(shape, axis=1), 1.0)
     gap = np.concatenate([slider.trace(0.0, True)[1], -track.trace(0.17)[1]])
-    # But for the slope of the track under 1 N.
+    # Up to the slope of the track under 1 N.
     assert np.abs(shape @ gap).max() < 1e-2 * np.linalg.norm(gap)
     assert all("units" in found[name].attrs for name in found.data_vars)
     np.testing.assert_array_equal(found.unstable, found.growth_rate > 1e-3)
@@ -255,7 +255,7 @@ def test_a_law_without_load_still_has_a_shape_for_its_state():
     assert np.isfinite(found.mode_shape).all()
 
 
-def test_what_a_map_shows():
+def test_measures_of_a_map():
     found = stability.stability_of(pair(dragged(), 0.8, rod(-45.0)))
     every = st.sliding_stability(pair(dragged(), 0.8, rod(-45.0)))
     fastest = int(np.argmax(every.growth_rate.values))
@@ -318,7 +318,7 @@ def on_feet(push: float, belt: float = 0.0, feet: int = 2, friction: float = 0.3
 
 @pytest.mark.parametrize(("push", "kind", "rate"), [(0.0, "held", 0.0), (2.9, "held", 0.0), (3.1, "sliding", 0.1)])
 def test_a_block_on_two_feet(push, kind, rate):
-    """It slides from mu m g = 3 N on; the feet share its weight as the push 0.5 m above ground tips it."""
+    """It slides above mu m g = 3 N; the feet share its weight under the moment of the push 0.5 m above ground."""
     found = st.sliding_stability(on_feet(push))
     assert found.attrs["equilibrium"] == kind
     np.testing.assert_allclose(found.slip_acceleration, rate, atol=1e-12)
@@ -375,7 +375,7 @@ def test_a_ground_without_friction_holds_nothing():
 
 
 def test_a_held_contact_sticks_where_it_would_come_to_rest():
-    """Hinged at its root and pressed on a floor 1 mm below, a rod does not strut against where its tip began."""
+    """Hinged at its root and pressed on a floor 1 mm below, a rod is not held at the initial place of its tip."""
     slider = rod(root_support="pinned")
     found = st.sliding_stability(
         pair(lambda rod: [st.Force(rod.at(0.01), y=-10.0)], 0.3, slider, st.RigidTrack(), gap=1e-3)
@@ -417,13 +417,13 @@ def unmoved():
     [
         (lambda: None, {}, "system must be a System"),
         (pair(dragged()), {"status": "stuck"}, "status must be one of separated, sticking, sliding"),
-        (pair(dragged()), {"status": ["sliding", "sliding"]}, "status must hold one for each contact, 1 in all"),
+        (pair(dragged()), {"status": ["sliding", "sliding"]}, "status must have one value for each contact, 1 in all"),
         (pair(dragged()), {"status": 2}, "status must be one"),
         (pair(dragged()), {"status": [2]}, r"status\[0\] must be one of"),
         (pair(dragged(), LURE), {"status": "sticking"}, "status must be sliding or separated under lugre"),
         (pair(pushed(y=-1.0)), {"velocity": 0.0}, "velocity must not be 0"),
         (pair(dragged()), {"velocity": 0.1}, "velocity must be left out: drives and tracks prescribe the slip"),
-        (pair(pushed(y=-1.0)), {"velocity": [0.1, 0.2]}, "velocity must hold one for each contact, 1 in all"),
+        (pair(pushed(y=-1.0)), {"velocity": [0.1, 0.2]}, "velocity must have one value for each contact, 1 in all"),
         (pair(dragged()), {"velocity": [0.1]}, r"velocity\[0\] must be 0: drives and tracks prescribe the slip"),
         (
             pair(pushed(y=-1.0)),

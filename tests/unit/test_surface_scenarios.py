@@ -1,4 +1,4 @@
-"""Faces in contact in scenarios: the table, the shipped brake, what is refused and how."""
+"""Faces in contact in scenarios: the table, the shipped brake, refusals."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_a_surface_stands_on_a_plane_beside_a_contact(block):
 
 
 def test_a_force_on_a_face_presses_evenly(block):
-    """The surface carries it with equal pressure at every point, to what a wider bed bends."""
+    """The surface carries it with equal pressure at every point, up to the bending of a wider bed."""
     case = st.load_scenario(block, {"friction": 0.0})
     run = case.simulate()
     force = run.normal_force.isel(time=-1)
@@ -110,17 +110,17 @@ def test_a_force_on_a_face_presses_evenly(block):
         ({"gap": "-1 mm"}, "surfaces.0.gap must leave the faces apart"),
         ({"surfaces.0.tangent": [1.0, 0.0]}, "surfaces.0"),
         ({"bodies.die.contact_faces": ["sole"]}, "bodies.die.contact_faces.0 must be one of left, right"),
-        ({"bodies.die.mesh.offset": [0.05, 0.0, 0.0]}, "must lie before the whole face"),
+        ({"bodies.die.mesh.offset": [0.05, 0.0, 0.0]}, "must lie opposite the whole face"),
         ({"drives.0.point": "crown"}, "drives.0.point must be"),
     ],
 )
-def test_surfaces_that_are_not_are_refused_in_one_line(block, overrides, message):
+def test_bad_surfaces_are_refused_in_one_line(block, overrides, message):
     (first, *_) = problems(block, overrides)
     assert message in first
     assert "\n" not in first
 
 
-def test_a_body_of_another_kind_is_told(block):
+def test_a_body_of_another_kind_is_reported(block):
     tables = read_tables(block)
     tables["surfaces"][0]["track"] = {"kind": "axisymmetric", "body": "bed"}
     with pytest.raises(st.ScenarioError) as caught:
@@ -128,7 +128,7 @@ def test_a_body_of_another_kind_is_told(block):
     assert caught.value.problems == ("surfaces.0.track.body must be a body of the kind axisymmetric, got 'bed'",)
 
 
-def test_something_must_touch(block):
+def test_a_contact_is_required(block):
     tables = read_tables(block)
     for given, message in (
         ({}, "contacts must be given: contacts of bodies at points, in place of contact"),

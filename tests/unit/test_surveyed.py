@@ -1,4 +1,4 @@
-"""Surveys from what came of their points: modes followed, tones named, tables and maps, the command line."""
+"""Surveys from the outcomes of points: tracked modes, named tones, tables and maps, the command line."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ def modes(*frequencies):
 
 
 def test_modes_keep_their_names_from_point_to_point():
-    """One comes up later, one pauses, and all are named by rising frequency."""
+    """One appears later, one pauses, and all are named by rising frequency."""
     before = [[], [0], [1], [2], [3]]
     names = followed([modes(*one) for one in FREQUENCIES], before)
     assert names == [[], [1], [1, 2], [0, 2], [1, 2]]
-    # What is farther off than a fifth is another mode.
+    # A mode farther away than a fifth is another one.
     assert followed([modes(1000.0), modes(1250.0)], [[], [0]]) == [[0], [1]]
     assert followed([modes(1000.0), modes(1150.0)], [[], [0]]) == [[0], [0]]
-    # Two never become one.
+    # Two modes never merge.
     assert followed([modes(1000.0), modes(990.0, 1010.0)], [[], [0]]) == [[1], [0, 1]]
 
 
@@ -89,7 +89,7 @@ def a_survey() -> xr.Dataset:
     return surveyed(layout, keys, layout.values, outcomes, {"title": "By hand"})
 
 
-def test_what_joins_another_mode_has_its_name():
+def test_a_mode_that_joins_another_has_its_name():
     found = a_survey()
     assert found.frequency.dims == ("friction", "load", "mode")
     assert found.frequency.sel(mode=0).values.ravel()[2:5].tolist() == [1010.0, 1000.0, 990.0]
@@ -133,7 +133,7 @@ def test_a_map_has_tones_by_colour_and_what_is_quiet_beside_them():
         plot.squeal_map(a_survey().drop_vars("fate"))
 
 
-def test_the_command_line_prints_what_each_mode_becomes(stridula, tmp_path):
+def test_the_command_line_prints_the_fate_of_each_mode(stridula, tmp_path):
     words = ("survey", "weak-pressure", "--vary", "friction=0.3,0.9", "-o", "found.nc", "--table", "found.csv")
     code, out, _ = stridula(*words)
     assert code == 0

@@ -1,4 +1,4 @@
-"""Sweeps: points and their order, what is measured, what is kept on disk and how a sweep goes on."""
+"""Sweeps: points and their order, measures, files on disk and resuming."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_a_list_has_the_dimension_point_and_a_coordinate_for_each_key():
     found = st.sweep("squeal", points, "travel", **SHORT)
     assert found["travel"].dims == ("point",)
     assert found["friction"].values.tolist() == [0.3, 0.9]
-    # Of two units both become SI.
+    # Values in two units both become SI.
     assert found["slider.length"].values.tolist() == [0.5, 0.6]
     assert found["slider.length"].attrs["units"] == "m"
     assert set(found.coords) == {"point", "friction", "slider.length"}
@@ -88,7 +88,7 @@ def test_a_law_and_its_parameters_vary_together():
     assert "static must be given" in str(found["message"][1].item())
 
 
-def test_whole_numbers_and_what_else_a_point_may_change():
+def test_points_may_change_whole_numbers_duration_and_sampling():
     """Other duration, step and sampling: such points do not run side by side."""
     grid = st.Grid({"elements": [4.0, 5.0], "simulation.duration": [1e-3, 2e-3]})
     found = st.sweep("squeal", grid, {"samples": lambda run: run.sizes["time"]}, sample_rate="50 kHz")
@@ -158,7 +158,7 @@ def test_stability_is_that_of_linear_theory_at_each_point():
     assert np.isnan(found.sel(friction=2.0)["unstable_modes"])
 
 
-def test_what_friction_holds_has_no_growth():
+def test_held_contacts_have_no_growth():
     found = st.sweep("squeal", [{"friction": 1.5}], "stability").isel(point=0)
     assert (found["equilibrium"].item(), int(found["unstable_modes"])) == ("held", 0)
     assert np.isnan(found["growth_rate"])
@@ -173,8 +173,8 @@ def test_a_measure_brings_those_that_belong_to_it(monkeypatch):
     assert found["ended"].item() == "finished"
 
 
-def test_failing_points_are_kept_with_their_message_and_the_others_go_on():
-    """Not built, overlapping at the start, blown up by its drive; each as alone."""
+def test_failing_points_are_kept_with_their_message_and_the_others_continue():
+    """Not built, overlapping at the start, blown up by its drive; each as in a run alone."""
     points = [
         {"friction": 0.3, "angle": "20 deg", "transverse": 3.0},
         {"friction": 0.3, "angle": "95 deg", "transverse": 3.0},
@@ -216,7 +216,7 @@ def stop_after(count):
     return watch
 
 
-def test_the_file_has_the_same_bytes_whatever_the_workers_and_however_often_it_was_stopped(tmp_path):
+def test_the_file_has_the_same_bytes_for_any_workers_and_interruptions(tmp_path):
     one = complete("one.nc", workers=1)
     assert complete("two.nc", workers=3) == one
     with pytest.raises(KeyboardInterrupt):
@@ -307,7 +307,7 @@ st.sweep("squeal", GRID, FORCES, out="map.nc", watchers=[die], **SHORT)
 """
 
 
-def test_a_killed_process_leaves_a_sweep_that_goes_on(tmp_path):
+def test_a_killed_process_leaves_a_sweep_that_can_be_resumed(tmp_path):
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
     done = subprocess.run([sys.executable, "-c", KILLED], env=environment, capture_output=True, text=True)
     assert done.returncode == -signal.SIGKILL, done.stderr
@@ -329,8 +329,8 @@ def test_a_full_disk_keeps_the_parts(monkeypatch, tmp_path):
     assert [progress.done for progress in seen] == [144]
 
 
-def test_two_at_once_do_no_harm(tmp_path):
-    """Another process completes the sweep and removes the parts while this one is under way."""
+def test_two_processes_may_compute_the_same_sweep(tmp_path):
+    """Another process completes the sweep and removes the parts while this one runs."""
 
     def other_completes(progress):
         if progress.done < 144 and not (tmp_path / "map.nc").exists():
@@ -443,9 +443,9 @@ def test_bad_points_are_named(make, message):
         make()
 
 
-def test_several_machines_give_the_same_bytes_and_a_lost_one_is_told():
+def test_several_machines_give_the_same_bytes_and_a_lost_one_is_reported():
     with warnings.catch_warnings():
-        # What dask's own start and end warn of is not ours.
+        # Warnings of dask's own start and end are ignored.
         warnings.simplefilter("ignore")
         distributed = pytest.importorskip("distributed")
         options = {"dashboard_address": None, "processes": True, "silence_logs": 50}
@@ -468,7 +468,7 @@ def _die(run):
 
 
 def test_ctrl_c_stops_threads_at_once():
-    """The second part would take a minute and more; what the first one compiles is compiled before."""
+    """The second part would take a minute or more; compilation of the first one is done before."""
 
     def interrupt(progress):
         raise KeyboardInterrupt

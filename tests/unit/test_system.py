@@ -141,11 +141,11 @@ ROUND = st.ModalBeam(st.Material(2.1e11, 7800.0), st.Circle(0.01), 0.8)
         ),
         (
             lambda: st.PointContact(BAR.centre, BAR, 0.1),
-            "track must be another body than the tip's (equal ones need names), got a ModalBeam for both",
+            "track must be a body other than the tip's (equal bodies need names), got a ModalBeam for both",
         ),
         (
             lambda: st.Spring(PLATE.centre, PLATE.centre, stiffness=1.0),
-            "second must be another point than first (equal bodies need names), got a BodyPoint for both",
+            "second must be a point other than first (equal bodies need names), got a BodyPoint for both",
         ),
         (
             lambda: st.Force(PLATE, y=1.0),
@@ -176,15 +176,15 @@ ROUND = st.ModalBeam(st.Material(2.1e11, 7800.0), st.Circle(0.01), 0.8)
         (lambda: st.ModalBeam([BAR] * 20, BAR.section, 0.8), "material must be a Material, got a list"),
     ],
 )
-def test_messages_name_the_kind_of_what_was_given(refused, message):
+def test_messages_name_the_type_of_a_bad_argument(refused, message):
     """The fields of a body would fill a screen."""
     with pytest.raises(ValueError) as caught:
         refused()
     assert str(caught.value) == message
 
 
-def test_what_is_kept_of_a_system_and_its_bodies_does_not_travel():
-    """In another process texts have another hash, and functions cannot be read."""
+def test_cached_results_of_a_system_are_not_pickled():
+    """In another process texts have other hashes, and functions cannot be unpickled."""
     system = st.load_scenario("squeal").system
     arrays = assemble(system)
     assert assemble(system) is arrays
@@ -200,7 +200,7 @@ def test_what_is_kept_of_a_system_and_its_bodies_does_not_travel():
     assert "kept" not in vars(replace(system))
 
 
-def test_probes_are_added_to_what_is_assembled_once():
+def test_probes_are_added_to_the_cached_assembly():
     system = st.load_scenario("squeal").system
     probes = [st.Acceleration(system.track.centre, "y"), st.Reaction(system.slider, "x")]
     assert assemble(system).probes == []
@@ -211,7 +211,7 @@ def test_probes_are_added_to_what_is_assembled_once():
     assert assemble(system).probes == []
 
 
-def test_what_a_beam_gives_at_a_point_may_be_changed():
+def test_the_trace_of_a_beam_may_be_modified():
     rod = st.load_scenario("squeal").system.slider
     first = rod.trace(0.0)
     first[:] = 0.0

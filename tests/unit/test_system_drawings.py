@@ -1,4 +1,4 @@
-"""Drawings of systems before their run: where things are, which way they go, and what is said of them."""
+"""Drawings of systems before their run: places, directions and labels."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def on_belt(track=None, drives=(), **options):
 
 
 def said(figure) -> list[str]:
-    """Return all words of a figure."""
+    """Return all texts of a figure."""
     words = [text.get_text() for axes in figure.axes for text in axes.texts]
     words += [axes.get_title("left") for axes in figure.axes] + [text.get_text() for text in figure.texts]
     return words + [text.get_text() for legend in figure.legends for text in legend.get_texts()]
@@ -80,7 +80,7 @@ def test_a_start_and_a_weight_say_where_a_tip_slides():
 
 
 @pytest.mark.parametrize("name", PLANE)
-def test_no_modes_are_looked_for(name, monkeypatch):
+def test_no_modes_are_computed(name, monkeypatch):
     system = st.load_scenario(name).system
 
     def modes(*_, **__):
@@ -133,7 +133,7 @@ def test_bodies_are_as_thick_as_they_are():
     assert "guided end" not in words
 
 
-def test_what_is_alike_and_near_is_drawn_once():
+def test_equal_neighbouring_symbols_are_drawn_once():
     figure = plot.system(st.load_scenario("violin").system)
     words = said(figure)
     assert "0.22 N, each of 5" in words
@@ -158,7 +158,7 @@ def test_symbols_begin_and_end_where_they_should():
         assert places[:, 1].min() < start[1]
 
 
-def test_what_has_no_place_is_said():
+def test_parts_without_a_place_are_listed():
     pair = st.ReducedBody(np.eye(4), np.eye(4) * 1e6, {"tip": (0, 1), "back": (2, 3)}, name="pad")
     contact = st.PointContact(pair.at("tip"), st.RigidTrack(velocity=1.0), friction=st.Coulomb(0.3))
     spring = st.Spring(pair.at("back"), stiffness=1e3)
@@ -188,7 +188,7 @@ def test_bodies_in_space_are_drawn_with_arrows_and_names(name, monkeypatch):
         assert any(one.startswith(system.body_name(body)) for one in words)
     assert {"contact", "normal of a contact", "force"} <= set(words)
     assert any(one.startswith("x, y and z: ") for one in words)
-    # All that is drawn is in the room for it.
+    # All drawn parts lie in the box.
     (axes,) = figure.axes
     lines = np.concatenate([np.column_stack(line.get_data_3d()) for line in axes.get_lines()])
     x, y, _ = plot.scenes.proj3d.proj_transform(*lines.T, axes.get_proj())
@@ -200,7 +200,7 @@ def test_bodies_in_space_are_drawn_with_arrows_and_names(name, monkeypatch):
 
 
 @pytest.mark.parametrize("wrong", [None, MASS, "squeal"])
-def test_what_is_no_system_is_refused(wrong):
+def test_other_objects_are_refused(wrong):
     with pytest.raises(ValueError, match="system must be a System"):
         plot.system(wrong)
 
@@ -227,7 +227,7 @@ def test_the_command_line_draws_a_system(stridula, tmp_path):
     assert "--plot must end in one of" in err
 
 
-def test_a_track_says_how_it_moves():
+def test_the_motion_of_a_track_is_labelled():
     shaken = dataclasses.replace(st.RigidTrack(velocity=0.5), normal_velocity=-0.1, normal_history=st.Harmonic(50.0))
     words = said(plot.system(on_belt(shaken)))
     assert {"track 0.5 m/s", "track 0.1 m/s, harmonic"} <= set(words)

@@ -1,4 +1,4 @@
-"""Every case within its tolerance; and a wrong law, mass, body or scheme falls short."""
+"""Every case is within its tolerance; a wrong law, mass, body or scheme is not."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the cases expect, derived in the code, against the numbers that the field prints."""
+"""Expected values of the cases, derived in the code, against published numbers."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def test_frequencies():
 
 
 def test_schellengs_least_force_is_the_swing_that_the_losses_ask_for():
-    """Each mode of Helmholtz motion takes ``2 s rho S L v / (beta k pi)²`` for a bow near the bridge, in phase.
+    """Each mode of Helmholtz motion requires ``2 s rho S L v / (beta k pi)²`` for a bow near the bridge, in phase.
 
     From ``q'' + 2 s q' + w² q = phi f`` in resonance, with the rectangles of the velocity under the bow; the cosines
     add up to a parabola that swings by ``pi² / 4`` times the first, and friction can swing by ``dmu F``.

@@ -73,7 +73,7 @@ def test_every_case_met_is_a_good_end(stridula, tmp_path):
     assert (folder / "fine.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_a_case_that_falls_short_is_told_everywhere(stridula, tmp_path):
+def test_a_case_that_falls_short_is_reported_everywhere(stridula, tmp_path):
     code, out, err = stridula([GOOD, SHORT], "--out", "there")
     assert code == 1
     assert out.count("falls short") == 1
@@ -128,7 +128,7 @@ class Interrupting(st.Constant):
 
 
 def test_ctrl_c_in_the_last_chunk_of_a_run_is_not_lost(stridula):
-    """A run keeps it until its chunk is done, and ends well if that was the last: the rest must stop all the same."""
+    """A run delays it until its chunk is done, and succeeds if that was the last: the rest must still stop."""
 
     def short_run() -> Outcome:
         body = st.PointMass(1.0)

@@ -1,22 +1,23 @@
-"""Search for one set of beams, force and start point under which the paper's numbers come out.
+"""Search for one set of beams, force and start point that reproduces the paper's numbers.
 
-The paper prints neither dimensions nor material nor damping. This searches a steel pair of one section, whose damping
-rises with frequency, with `st.calibrate` from a seed:
+The paper prints neither dimensions nor material nor damping. This searches for a pair of steel beams of one section,
+whose damping rises with frequency, with `st.calibrate` from a seed:
 
     python examples/papers/laulagnet_2011/calibrate.py wide [SEED] [GENERATIONS]
     python examples/papers/laulagnet_2011/calibrate.py refine [SEED] [GENERATIONS]
 
-`wide` takes a sample all over the ranges below, asks linear theory which modes of each set grow in sliding, runs those
-of the sets that suit, goes on from the best of them and then, with narrower aims, from the best set that it found;
-`refine` starts around the shipped set. The objective adds up, over the claims marked as fitted and the one that the
-frequency rises from 10 to 200 N without a fall, the squares of how far each measure lies outside its aim, in units of
-half the tolerance: the middle 70 % in the wide stage, the middle 90 % in the narrower one, in which four starts of each
-chaotic case are to meet it. Three aims are no claims: the growing modes are to lie one above the other and above the
-swing of the stuck tip as the paper's 2500 Hz, 900 Hz and 0.1 s do, and the upper one is to grow faster. Cases are taken
-in turn, and a candidate that already fails on one is not run on the others. The sounds are looked at in the narrower
-stage only, the ladders of friction and the rise from 20 to 40, 80, 150 N never.
+`wide` samples the whole of the ranges below, computes the growing modes of sliding of each set by linear theory, runs
+the suitable sets, and searches from the best of them; then it searches with narrower targets from the best set of that
+search. `refine` starts around the shipped set. The objective is the sum, over the claims marked as fitted and the claim
+that the frequency rises from 10 to 200 N without a fall, of the squared distances of each measure from its target, in
+units of half the tolerance. The target is the middle 70 % of the tolerance in the wide stage and the middle 90 % in the
+narrower one, in which four starts of each chaotic case must meet it. Three targets are not claims: the ratios of the
+growing modes to each other and to the swing of the stuck tip are those of the paper's 2500 Hz, 900 Hz and 0.1 s, and
+the upper mode grows faster. Cases are taken in turn, and a candidate that fails one is not run on the others. The
+sounds are included in the narrower stage only; the series over friction and the rise from 20 to 40, 80, 150 N never
+are.
 
-Prints every improvement, at the end the best set and its claims.
+Prints every improvement, and at the end the best set and its claims.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ from stridula.papers.laulagnet_2011.runs import median_over_starts
 from stridula.studies.ensembles import perturbed_starts
 
 TRACK = 1.4
-# For a track of that length; a set is then scaled as a whole.
+# For a track of this length; a set is then scaled as a whole.
 RANGES = {
     "slider.length": st.Range(0.35, 0.65),
     "section.height": st.Range(0.006, 0.016),
@@ -53,15 +54,15 @@ RANGES = {
     "force per width": st.Range(30.0, 1000.0, logarithmic=True),
     "contact.gap": st.Range(1e-6, 1e-4, logarithmic=True),
 }
-# Sections 3.1 to 3.3 know force and width only by their ratio, and 3.4 load and width. The width is chosen by 3.4: on a
-# ladder of loads whose rungs are as far apart as the widths, each width finds its 2 N, its 50 N and loads between 10 N
-# and 200 N, so that one climb at the least width does for all.
+# Sections 3.1 to 3.3 depend on force and width only by their ratio, and 3.4 on that of load and width. The width is
+# chosen by 3.4: loads have the same spacing as the widths, so that one series of loads at the smallest width contains
+# 2 N, 50 N and loads between 10 N and 200 N for every width.
 RUNG = 25.0 ** (1.0 / 8.0)
 WIDTHS = tuple(0.003 * RUNG**k for k in range(8))
 WEAK, STRONG, LADDER = 0, 8, range(4, 12)
 RUNGS = range(WEAK - len(WIDTHS) + 1, LADDER[-1] + 1)
 SCALES = np.geomspace(1.0 / 1.4, 1.4, 201)
-# With narrower aims width and scale are searched as the rest is.
+# With narrower targets, width and scale are also searched.
 NARROW = RANGES | {
     "section.width": st.Range(WIDTHS[0], WIDTHS[-1], logarithmic=True),
     "scale": st.Range(float(SCALES[0]), float(SCALES[-1]), logarithmic=True),
@@ -71,33 +72,33 @@ TIMES, FREQUENCIES = (
     ("length of the stops", "spacing of the bursts", "length of a burst"),
     ("frequency of the limit cycle",),
 )
-# What grows with the scale: see `scaled`.
+# Parameters proportional to the scale: see `scaled`.
 LENGTHS = ("slider.length", "track.length", "section.height", "contact.gap", "damping.rise", "force per width")
-# Sets of which linear theory is asked, sets that are run, forces and gaps with each, sets with which the search begins.
+# Numbers of sets for linear theory, of sets that are run, of forces and gaps with each, and of initial sets of a
+# search.
 SAMPLED, SCREENED, DRAWS, POPULATION = 8192, 2048, 8, 64
-# Sets of a generation with narrower aims, and how far they are spread.
+# Sets of a generation with narrower targets, and their spread.
 NEAR, SPREAD = 24, 0.01
 UNKNOWN_TO_LINEAR_THEORY = ("force per width", "contact.gap")
-# Starts of the cases that are chaotic in the narrower stage: each of them is to meet the aims.
+# Starts of the chaotic cases in the narrower stage, each of which must meet the targets.
 STARTS = 4
-# Sums of squared misses of a case from which a candidate is not run on the next ones, all over the ranges and with
-# narrower aims.
+# Sums of squared misses of a case above which a candidate is not run on the next ones, in the wide and the narrower
+# stage.
 GIVE_UP_WIDE, GIVE_UP_NARROW = 3.0, 30.0
-# Linear theory costs next to nothing; of what is run, the squeal is the hardest to meet, so it comes first. The
-# stair takes longest.
+# Linear theory is cheap. The squeal is the hardest case to meet, so it is run first. The series of loads takes longest.
 STAIR, HEARD = "stair", "heard"
 ORDER = {"3.2": 0, "3.1": 1, "3.3": 2, "3.4": 3, HEARD: 4, STAIR: 5}
 CHAOTIC = {claim.chaotic for claim in CLAIMS}
 
 
 def part(claim: Claim) -> str:
-    """Return the part of the search in which a claim is looked at: its section, the stair of loads, or the sounds."""
+    """Return the part of the search that includes a claim: its section, the series of loads, or the sounds."""
     if claim.claim.startswith(HEARD):
         return HEARD
     return STAIR if claim.measure is rise_without_a_fall else claim.section
 
 
-# The search of the shipped set did not know the stair yet.
+# The search of the shipped set did not include the series of loads yet.
 AIMED_AT = sorted(
     (claim for claim in CLAIMS if claim.fitted or part(claim) == STAIR), key=lambda claim: ORDER[part(claim)]
 )
@@ -108,9 +109,9 @@ CASES = {
     "3.4": ("weak-pressure", "strong-pressure"),
     HEARD: (),
 }
-# Aims that are no claims. Modes: what the paper's frequencies and time come to whatever the scale, each with its
-# tolerance of 10 %; an upper mode that grows no faster than the lower one gives way to it under single loads. Stair:
-# the claim on it in two parts, so that a search sees what is nearer.
+# Targets that are not claims. Modes: ratios of the paper's frequencies and time, independent of the scale, each with
+# its tolerance of 10 %; an upper mode that does not grow faster than the lower one disappears at single loads. Series
+# of loads: its claim in two parts, so that a search can compare sets that fail it.
 MODE_AIMS = {
     "lower growing mode over the swing of the stuck tip": st.Target(*near(900.0 * 0.1, 0.2)),
     "upper growing mode over the lower one": st.Target(*near(2500.0 / 900.0, 0.2)),
@@ -121,12 +122,12 @@ STAIR_AIMS = {
     "rise": st.Target(low=2.2, scale=0.5),
 }
 NEITHER = (math.nan, math.nan)
-# The second of 3.2 ends as the bursts go on.
+# The second of 3.2 ends while bursts continue.
 LASTS = st.Target(low=0.9, scale=0.2)
 
 
 class CandidateRuns(Runs):
-    """Runs under a candidate, whose force and start point enter each case in its own way."""
+    """Runs with the parameters of a candidate, whose force and start point differ between cases."""
 
     def __init__(self, values: Mapping[str, float]) -> None:
         self.values = values
@@ -139,7 +140,7 @@ class CandidateRuns(Runs):
         super().__init__(own | {"damping": form})
 
     def scenario(self, case: str, **overrides: Any) -> Any:
-        """Return a case under the candidate; the axial cases start mirrored and are pushed along the axis."""
+        """Return a case with the parameters; the axial cases start mirrored and are pushed along the axis."""
         axial = case in ("axial-sliding", "judder")
         own = {"contact.at": self.overrides["track.length"] - self.start if axial else self.start}
         if axial:
@@ -149,7 +150,7 @@ class CandidateRuns(Runs):
         return super().scenario(case, **own, **overrides)
 
     def keep(self, case: str, record: Any) -> None:
-        """Keep the record of a case that was made elsewhere."""
+        """Keep the record of a case computed elsewhere."""
         self._records[case] = record
 
     def widened(self, width: float) -> CandidateRuns:
@@ -157,17 +158,17 @@ class CandidateRuns(Runs):
         return CandidateRuns(self.values | {"section.width": width})
 
     def under_pressure(self, record: Any) -> CandidateRuns:
-        """Return these runs with a record of 3.4, whatever its load."""
+        """Return these runs with a record of 3.4 at any load."""
         other = copy(self)
         other._records = {**self._records, "weak-pressure": record, "strong-pressure": record}
         return other
 
 
 def scaled(values: Mapping[str, float], scale: float | None = None) -> dict[str, float]:
-    """Return a set whose times are longer by a factor, its own one if left out, and its frequencies lower.
+    """Return a set scaled by a factor, its own if left out: times grow by it, and frequencies fall.
 
-    Similarity: where lengths, height and gap grow by a factor, so do all times; forces grow with it and with the width,
-    and a damping that rises with frequency rises less steeply.
+    Similarity: if lengths, height and gap grow by a factor, so do all times; forces grow with it and with the width,
+    and the rise of damping with frequency becomes less steep.
     """
     full = {"track.length": TRACK, "section.width": WIDTHS[0], **values}
     factor = full.pop("scale", 1.0) if scale is None else scale
@@ -218,13 +219,13 @@ def narrow_target(claim: Claim) -> st.Target:
 
 
 class Measured:
-    """The aims of candidates, part by part, the runs of a case side by side."""
+    """Measures of the targets for candidates, part by part, with the runs of a case side by side."""
 
     def __init__(self, targets: Mapping[str, st.Target], give_up: float, starts: int) -> None:
         self.targets, self.give_up, self.starts = targets, give_up, starts
 
     def __call__(self, points: Sequence[Mapping[str, float]]) -> list[dict[str, float]]:
-        """Return the value of each aim for each candidate; NaN for those that were not looked at."""
+        """Return the value of each target for each candidate; NaN for those that were not computed."""
         values: list[dict[str, float]] = [dict.fromkeys(self.targets, math.nan) for _ in points]
         first = [CandidateRuns(scaled(point)) for point in points]
         for one, run in zip(values, first, strict=True):
@@ -247,12 +248,12 @@ class Measured:
         return values
 
     def promising(self, which: Iterable[int], names: Iterable[str], values: Sequence[Mapping[str, float]]) -> list[int]:
-        """Return those candidates that do not miss aims by too much."""
+        """Return the candidates that do not miss targets by too much."""
         names = list(names)
         return [k for k in which if self.miss(names, values[k]) <= self.give_up]
 
     def miss(self, names: Iterable[str], values: Mapping[str, float]) -> float:
-        """Return the sum of the squared misses of aims."""
+        """Return the sum of the squared misses of targets."""
         return sum(self.targets[name].miss(values[name]) ** 2 for name in names)
 
     def looked_at(self, section: str, runs: Sequence[CandidateRuns]) -> list[dict[str, float]]:
@@ -269,7 +270,7 @@ class Measured:
             return list(pool.map(partial(self.measured, claims), runs))
 
     def at_best_width(self, claims: Sequence[Claim], runs: CandidateRuns) -> dict[str, float]:
-        """Return the claims of 3.4 at the width that suits them and the stair best, and that width."""
+        """Return the claims of 3.4 at the width that meets them and the series of loads best, and that width."""
 
         def measure(record: xr.Dataset) -> tuple[dict[str, float], tuple[float, float]]:
             own = runs.under_pressure(record)
@@ -288,7 +289,7 @@ class Measured:
         return min(found)[2]
 
     def to_scale(self, points: Sequence[Mapping[str, float]]) -> list[CandidateRuns]:
-        """Return runs of each candidate at its scale, or else at the one that suits its squeal best, with that run."""
+        """Return runs of each candidate, with its squeal, at its scale or else at the best scale for its squeal."""
         runs = [CandidateRuns(scaled(point)) for point in points]
         self.run("squeal", runs)
         if self.starts > 1:
@@ -302,7 +303,7 @@ class Measured:
         return runs
 
     def best_scale(self, runs: CandidateRuns) -> float:
-        """Return the scale at which times and frequency of the squeal miss least, 1 where they have no value."""
+        """Return the scale with the smallest misses of times and frequency of the squeal, 1 if these have no value."""
         misses = np.zeros(SCALES.size)
         for claim in AIMED_AT:
             if claim.claim in (*TIMES, *FREQUENCIES):
@@ -314,7 +315,7 @@ class Measured:
         return float(SCALES[np.argmin(misses)]) if np.ptp(misses) > 0.0 else 1.0
 
     def run(self, case: str, runs: Sequence[CandidateRuns]) -> None:
-        """Run a case under several candidates at once."""
+        """Run a case for several candidates at once."""
         if not runs:
             return
         scenarios = [one.scenario(case) for one in runs]
@@ -323,7 +324,7 @@ class Measured:
             one.keep(case, record)
 
     def measured(self, claims: Sequence[Claim], runs: CandidateRuns) -> dict[str, float]:
-        """Return the value of each claim, of several starts the one that misses its aim most."""
+        """Return the value of each claim; for several starts, the one that misses its target most."""
         values = {}
         for claim in claims:
             target = self.targets[claim.claim]
@@ -332,7 +333,7 @@ class Measured:
 
 
 def growing(runs: CandidateRuns) -> dict[str, float]:
-    """Return what linear theory says of the modes that grow in sliding, NaN where there are not two."""
+    """Return the ratios of the growing modes by linear theory, NaN if there are not two."""
     found = st.sliding_stability(runs.scenario("strong-pressure").system)
     grow = np.flatnonzero(found["unstable"].values)
     if grow.size < 2:
@@ -347,7 +348,7 @@ def growing(runs: CandidateRuns) -> dict[str, float]:
 def under_loads(
     runs: Runs, loads: Sequence[float], measure: Callable[[xr.Dataset], Any], failed: Any, starts: int = 1
 ) -> list[Any]:
-    """Return a measure of 3.4 under each load [N], start by start, and what is given for runs that fail."""
+    """Return a measure of 3.4 under each load [N], start by start; `failed` for runs that fail."""
     scenarios = [runs.scenario("strong-pressure", normal_load=load) for load in loads]
     systems = [system for one in scenarios for system in perturbed_starts(one.system, starts)]
     found = st.simulate_many(systems, scenarios[0].duration, measure, provenance=False, errors="return")
@@ -355,10 +356,10 @@ def under_loads(
 
 
 def climb(pairs: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    """Return falls and rise of frequencies, given with their resolutions, from load to load.
+    """Return falls and rise of frequencies from load to load, given with their resolutions.
 
-    Falls: how far each lies below what a lower load gave by more than it resolves, as shares of that, added up. Rise:
-    the last one over the first one. Both NaN unless two loads have relaxations.
+    Falls: the sum of the relative distances of each below the highest at a lower load, beyond the resolution. Rise: the
+    last one over the first one. Both are NaN unless two loads have relaxations.
     """
     known = [pair for pair in pairs if np.isfinite(pair[0])]
     if len(known) < 2:
@@ -371,7 +372,7 @@ def climb(pairs: Sequence[tuple[float, float]]) -> tuple[float, float]:
 
 
 def stair(runs: Runs, starts: int) -> dict[str, float]:
-    """Return how the frequency of the relaxations climbs with the load, as medians over starts."""
+    """Return falls and rise of the frequency of the relaxations over the load, from medians over starts."""
     found = np.array(under_loads(runs, PRESSURES, relaxation, NEITHER, starts)).reshape(-1, starts, 2)
     pairs = [(median_over_starts(one[:, 0])[0], median_over_starts(one[:, 1])[0]) for one in found]
     return dict(zip(STAIR_AIMS, climb(pairs), strict=True))
@@ -397,10 +398,10 @@ def measured(claim: Claim, runs: Runs) -> float:
 
 
 def screened(targets: Mapping[str, st.Target], seed: int) -> list[dict[str, float]]:
-    """Return the best of a sample all over the ranges, the first generation of a search.
+    """Return the best of a sample of the whole ranges, the first generation of a search.
 
-    Linear theory, which knows neither force nor gap, looks at the whole sample. Sets that have the modes are run, each
-    under several forces and gaps.
+    Linear theory, which depends on neither force nor gap, is applied to the whole sample. The best sets by their modes
+    are run, each with several forces and gaps.
     """
     random = np.random.default_rng(seed)
     evaluate, misses = Measured(targets, GIVE_UP_WIDE, 1), []
@@ -424,7 +425,7 @@ def sample(ranges: Mapping[str, st.Range], size: int, random: np.random.Generato
 
 
 def linear_theory(points: Sequence[Mapping[str, float]]) -> list[dict[str, float]]:
-    """Return what linear theory says of sets."""
+    """Return the ratios of the growing modes of sets."""
     with ThreadPoolExecutor() as pool:
         return list(pool.map(lambda point: growing(CandidateRuns(scaled(point))), points))
 
@@ -462,7 +463,7 @@ def search(
 
 
 def main(stage: str = "wide", seed: str = "1", generations: str = "300") -> None:
-    """Search from a seed, and say which claims the best set meets."""
+    """Search from a seed, and print the claims that the best set meets."""
     warnings.simplefilter("ignore")
     if stage not in ("wide", "refine"):
         raise SystemExit(f"stage must be wide or refine, got {stage!r}")
@@ -476,7 +477,7 @@ def main(stage: str = "wide", seed: str = "1", generations: str = "300") -> None
         found = search(RANGES, targets, GIVE_UP_WIDE, 1, int(seed), int(generations), first, POPULATION)
         own_size = {"section.width": float(found["width"]), "scale": float(found["scale"])}
         start = {key: float(found[key]) for key in RANGES} | own_size
-        print("narrower aims, from there", flush=True)
+        print("narrower targets, from there", flush=True)
     targets = own | {claim.claim: narrow_target(claim) for claim in fitted}
     found = search(NARROW, targets, GIVE_UP_NARROW, STARTS, int(seed), int(generations), start, NEAR)
     best = {key: float(found[key]) for key in NARROW}
@@ -485,7 +486,7 @@ def main(stage: str = "wide", seed: str = "1", generations: str = "300") -> None
     rows = [claim.check(runs) for claim in AIMED_AT]
     for row in rows:
         print(f"{'holds' if row['holds'] else 'FAILS'}  {row['claim']}: {row['measured']} (printed {row['printed']})")
-    print(f"{sum(row['holds'] for row in rows)} of {len(rows)} claims that were aimed at hold")
+    print(f"{sum(row['holds'] for row in rows)} of {len(rows)} claims in the search hold")
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ def refinements() -> dict[str, dict[str, float]]:
 
 
 def converging() -> list[Claim]:
-    """Return the claims whose measures are averaged: all but the ladders of friction and of load."""
+    """Return the claims whose measures are averaged: all but the series over friction and over load."""
     return [claim for claim in CLAIMS if not claim.claim.startswith(("onset", "10 to 200 N"))]
 
 
@@ -47,7 +47,7 @@ def one_start(arguments: tuple[str, int]) -> tuple[str, list[float]]:
 
 
 def verdict(claim: Claim, base: tuple[float, float], refined: tuple[float, float]) -> bool:
-    """Return whether a refined mean stays where the unrefined one was."""
+    """Return whether a refined mean agrees with the unrefined one."""
     moved = abs(refined[0] - base[0])
     allowed = 0.03 if "separated" in claim.claim or "sliding in" in claim.claim else 0.03 * abs(base[0])
     return bool(moved <= allowed or moved <= base[1])

@@ -37,7 +37,7 @@ def peaks(run: xr.Dataset) -> float:
     return float(np.percentile(run["normal_force"], 99.0))
 
 
-# Beside the shares, one measure of each case: what it is heard or felt by.
+# Besides the shares, one measure of each case: its tone or its largest forces.
 CASES = {
     "squeal": ("frequency\n[Hz]", ringing),
     "judder": ("99th percentile\nof force [N]", peaks),
@@ -67,7 +67,7 @@ def means(scenario: st.Scenario, own: Callable[[xr.Dataset], float], step: float
 
 
 def draw(axes: Axes, places: list[float], found: list[xr.Dataset], names: tuple[str, ...]) -> None:
-    """Draw means with their intervals over what is refined."""
+    """Draw means with their intervals over the refined quantity."""
     for name in names:
         middle = np.array([float(one[f"{name}_mean"]) for one in found])
         half = np.array([float(one[f"{name}_interval"][1] - one[f"{name}_mean"]) for one in found])

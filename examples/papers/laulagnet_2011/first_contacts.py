@@ -30,7 +30,7 @@ IMPULSES = ("impulse of the first touch", "impulse over the first millisecond")
 
 @dataclass(frozen=True)
 class Start:
-    """What happens first: instants [s], and the impulse since the start [N s] over time [s]."""
+    """First events of a run: instants [s], and the impulse since the start [N s] over time [s]."""
 
     instants: dict[str, float]
     time: np.ndarray
@@ -42,7 +42,7 @@ class Start:
 
 
 def first(holds: np.ndarray, step: float, start: float = 0.0) -> float:
-    """Return the beginning of the first step from `start` on in which something holds [s], NaN if there is none."""
+    """Return the beginning of the first step from `start` on in which `holds` is true [s], NaN if there is none."""
     since = round(start / step) if np.isfinite(start) else holds.size
     found = np.flatnonzero(holds[since:])
     return float(since + found[0]) * step if found.size else float("nan")
@@ -63,12 +63,12 @@ def run(case: str, gap: float, scheme: CentralDifference | ExactModal, step: flo
 
 
 def instant_errors(found: list[Start], exact: list[Start], name: str, step: float) -> np.ndarray:
-    """Return how many steps later an instant comes, for each start."""
+    """Return by how many steps an instant is late, for each start."""
     return np.array([(a.instants[name] - b.instants[name]) / step for a, b in zip(found, exact, strict=True)])
 
 
 def are_same(errors: np.ndarray, step: float) -> np.ndarray:
-    """Return which errors, in steps, are small enough for the same event."""
+    """Return a mask of the errors, in steps, that are small enough for the same event."""
     return np.abs(errors) <= max(2.0, SAME / step)
 
 
@@ -92,7 +92,7 @@ def window_errors(found: list[Start], exact: list[Start]) -> np.ndarray:
 
 
 def root_mean_square(values: np.ndarray) -> float:
-    """Return the root mean square, NaN of nothing."""
+    """Return the root mean square, NaN without values."""
     return float(np.sqrt(np.mean(values**2))) if values.size else float("nan")
 
 
@@ -108,7 +108,7 @@ def compare(case: str) -> tuple[list[Start], list[list[Start]]]:
 
 
 def instant_cell(errors: np.ndarray, step: float) -> str:
-    """Return the largest error of what is the same event, and in how many starts it is another one."""
+    """Return the largest error for the same event, and the number of starts in which it is another one."""
     same = errors[are_same(errors, step)]
     others = errors.size - same.size
     most = f"{np.abs(same).max():.1f}" if same.size else "—"

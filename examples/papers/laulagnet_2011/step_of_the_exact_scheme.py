@@ -1,10 +1,10 @@
-"""The step and the cut-off of the exact scheme: what they leave in the statistics of the paper's cases.
+"""Errors of the statistics of the paper's cases due to the step and the cut-off of the exact scheme.
 
 Every case runs with the shipped modes, those below 15 kHz, under the explicit scheme at 0.5 µs, the reference, and at
-1 µs, and under the exact scheme at shares of its limit. Then the cut-off goes from 10 to 40 kHz, each at a fine step
-and at the chosen share of the limit, so that the modes left out and the step are told apart. Means are over starts
-whose gaps differ by up to 10 %: enough to part the unstable cases at the first contact, so that their runs are
-independent.
+1 µs, and under the exact scheme at fractions of its limit. Then the cut-off varies from 10 to 40 kHz, each at a fine
+step and at the chosen fraction of the limit, so that the effects of the modes left out and of the step are separate.
+Means are over starts whose gaps differ by up to 10 %: enough to separate the unstable cases at the first contact, so
+that their runs are independent.
 
 Writes docs/step-table.rst, docs/step-near-table.rst, docs/step-cutoff-table.rst and docs/images/step.png, in several
 minutes on two cores.
@@ -43,7 +43,7 @@ STARTS = {
 }
 UNSTABLE = ("judder", "weak-pressure", "strong-pressure")
 STATES = ("separated", "sticking", "sliding")
-# A cut-off little above the tone of strong pressure, 2.8 kHz, and what the steps are multiplied by there.
+# A cut-off a little above the tone of strong pressure, 2.8 kHz, and the factor of the steps there.
 NEAR, LONGER = 5e3, 3.0
 FORCE = "99.9th percentile of force [N]"
 PERTURBATION = 0.1
@@ -58,7 +58,7 @@ ELEMENTS = 40
 FINE = 2e-6
 CHOSEN = 0.3
 ALLOWED = 0.03
-# Rows in which nothing moves by more than this are left out of the tables.
+# Rows in which no mean changes by more than this are left out of the tables.
 TOLD = 0.01
 
 
@@ -75,7 +75,7 @@ Measure = Callable[[xr.Dataset], float]
 
 
 def travel(run: xr.Dataset) -> float:
-    """Return how far the tip has come [mm]."""
+    """Return the travel of the tip [mm]."""
     position = run["contact_position"].values
     return 1e3 * abs(float(position[-1] - position[0]))
 
@@ -136,19 +136,19 @@ def chosen_step(case: str, **overrides: float) -> float:
 
 
 def share_moved(found: Mean, reference: Mean) -> float:
-    """Return by which share of itself a mean moved."""
+    """Return the relative change of a mean."""
     return (found.value - reference.value) / abs(reference.value)
 
 
 def marked(text: str, found: Mean, reference: Mean) -> str:
-    """Return text in italics where only the 95 % interval of the reference saves a mean, bold where nothing does."""
+    """Return text in italics if a mean passes only by the 95 % interval of the reference, in bold if it fails."""
     if abs(share_moved(found, reference)) <= ALLOWED:
         return text
     return f"*{text}*" if abs(found.value - reference.value) <= reference.half else f"**{text}**"
 
 
 def moved(name: str, found: Mean, reference: Mean) -> str:
-    """Return by how many percent a mean moved, ± the 95 % interval of the difference; shares also in points."""
+    """Return the change of a mean in percent, ± the 95 % interval of the difference; shares also in points."""
     half = 100.0 * hypot(found.half, reference.half) / abs(reference.value)
     text = f"{signed(100.0 * share_moved(found, reference))} ± {half:.1f}"
     text += f" ({signed(100.0 * (found.value - reference.value))})" if name in STATES else ""
@@ -161,7 +161,7 @@ def signed(number: float) -> str:
 
 
 def worth_telling(reference: Mean, others: list[Mean]) -> bool:
-    """Return whether a mean moved anywhere by more than 1 %."""
+    """Return whether any mean changed by more than 1 %."""
     return reference.value != 0.0 and any(abs(share_moved(other, reference)) > TOLD for other in others)
 
 
@@ -180,7 +180,7 @@ def step_rows(case: str, reference: Means, check: Means, found: list[Means]) -> 
 
 
 def cutoff_rows(case: str, highest: Means, fine: list[Means], chosen: list[Means]) -> list[list[str]]:
-    """Return the rows of a case: all modes, what is left out below each cut-off, what the step adds to that."""
+    """Return the rows of a case: all modes, the change due to each cut-off, the further change due to the step."""
     return [
         [
             f"{case}: {name}",
@@ -194,13 +194,13 @@ def cutoff_rows(case: str, highest: Means, fine: list[Means], chosen: list[Means
 
 
 def draw(axes: Axes, places: list[float], found: list[Means], name: str, **style: Any) -> None:
-    """Draw means with their intervals over what is refined."""
+    """Draw means with their intervals over the refined quantity."""
     values, halves = [one[name].value for one in found], [one[name].half for one in found]
     axes.errorbar(places, values, halves, markersize=4, capsize=3, **style)
 
 
 def band(axes: Axes, reference: Mean) -> None:
-    """Draw what is allowed, 3 % about the reference, and the interval of the reference."""
+    """Draw the allowed range, 3 % about the reference, and the interval of the reference."""
     middle = reference.value
     for half, shade in ((ALLOWED * middle, 0.12), (reference.half, 0.3)):
         axes.axhspan(middle - half, middle + half, color="black", alpha=shade, linewidth=0)
@@ -208,7 +208,7 @@ def band(axes: Axes, reference: Mean) -> None:
 
 
 def logarithmic(axes: Axes, places: list[float], words: str) -> None:
-    """Give a panel its abscissa."""
+    """Set the abscissa of a panel."""
     axes.set_xscale("log")
     axes.set_xticks(places, [f"{place:.2g}" for place in places])
     axes.minorticks_off()
@@ -229,7 +229,7 @@ def draw_steps(panels: np.ndarray, case: str, reference: Means, check: Means, fo
 
 
 def draw_cutoffs(axes: Axes, cutoffs: dict[str, tuple[Means, list[Means]]], name: str) -> None:
-    """Draw by how much a mean differs from that with all modes."""
+    """Draw the difference of a mean from that with all modes."""
     places = [1e-3 * cutoff for cutoff in CUTOFFS]
     for number, case in enumerate(UNSTABLE):
         highest, fine = cutoffs[case]
@@ -284,7 +284,7 @@ def run_steps(case: str) -> tuple[Means, Means, list[Means]]:
 
 
 def run_near(case: str) -> tuple[Means, Means, list[Means]]:
-    """Return the same with the modes cut off little above the tone, at the same shares of the limit."""
+    """Return the same with modes cut off a little above the tone, at the same fractions of the limit."""
     schemes = [(CentralDifference(), FINEST), (CentralDifference(), CHECK), *((ExactModal(), h) for h in STEPS)]
     own = {"interval": LONGER * INTERVAL, "cutoff": NEAR}
     reference, check, *found = (ensemble(case, scheme, LONGER * step, **own) for scheme, step in schemes)

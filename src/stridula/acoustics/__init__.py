@@ -1,4 +1,4 @@
-"""What is heard: air, the track's motion from a record, its sound in time, levels, sensation, sound files."""
+"""Acoustics: air, sound of bodies from the motion in a record, levels, psychoacoustics, sound files."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ __all__ = ["Air", "Bridge", "radiate", "radiation_damping", "radiation_efficienc
 
 
 def __getattr__(name: str) -> Any:
-    """Import a name from its home on first use: levels and sensation need filters, which are slow to import."""
+    """Import a name from its module on first use: levels and sensation need filters, which are slow to import."""
     return on_first_use(__name__, _HOME, name)
 
 

@@ -17,7 +17,7 @@ PRESSURES = (75e3, 102e3)
 
 @dataclass(frozen=True)
 class Air:
-    """Humid air, as IEC 61094-2:2009, annex F, has it.
+    """Humid air after IEC 61094-2:2009, annex F.
 
     Speed of sound: Cramer 1993, J. Acoust. Soc. Am. 93, 2510-2516, equation 15, within 300 ppm. Density: the CIPM-81/91
     equation, Davis 1992, Metrologia 29, 67-70, within 100 ppm. Carbon dioxide: mole fraction 0.000314.
@@ -82,7 +82,7 @@ class Air:
 
     @property
     def attributes(self) -> dict[str, float]:
-        """What a sound says of the air that it goes through."""
+        """Attributes of a sound that describe the air."""
         given = {f"air_{name}": value for name, value in asdict(self).items()}
         return given | {"air_speed": self.speed, "air_density": self.density}
 

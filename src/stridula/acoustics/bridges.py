@@ -39,11 +39,11 @@ class Bridge:
     Parameters
     ----------
     point : BodyPoint
-        Where the force acts.
+        Point at which the force acts.
     direction : {"y", "x", "z", "axial", "transverse"} or sequence of float, optional
-        Direction in which a positive force pushes the body, in the words of probes.
+        Direction in which a positive force pushes the body, given as for probes.
     probe : str, optional
-        Name of the probe in the record, such as "string left end"; its only one if left out.
+        Name of the probe in the record, such as "string left end"; the only one of the record if left out.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def bridged_sound(
     Raises
     ------
     ValueError
-        If the record has no such probe, the body has no surface, or a listener is where it cannot be heard.
+        If the record has no such probe, the body has no surface, or a listener is inside a body or behind the baffle.
     """
     start, interval, force = _force(run, bridge.probe)
     body: Any = bridge.point.body
@@ -96,7 +96,7 @@ def bridged_sound(
         raise ArgumentError("baffled", "be False, or left out, for bodies in space", baffled)
     if body.modes().turning is not None:
         raise ArgumentError("point", "be on a body that does not turn", bridge.point)
-    # Any direction that is square to the force.
+    # Any direction perpendicular to the force.
     aside = np.cross(bridge.along, np.eye(3)[int(np.abs(bridge.along).argmin())])
     name = getattr(body, "name", "") or type(body).__name__
     pressure, time, places, attributes, motions = bodies_sound(
@@ -112,7 +112,7 @@ def bridged_sound(
 
 
 def _force(run: xr.Dataset, probe: str | None) -> tuple[float, float, Array]:
-    """Return when a record begins [s], its interval [s] and the samples of a force [N]."""
+    """Return the time at which a record begins [s], its interval [s] and the samples of a force [N]."""
     run = record("run", run)
     start, interval, _, _ = sampled(run)
     if FORCE not in run:
@@ -127,13 +127,13 @@ def _force(run: xr.Dataset, probe: str | None) -> tuple[float, float, Array]:
     if not np.isfinite(force).all():
         raise ArgumentError(FORCE, "be finite", got=f"{force[~np.isfinite(force)][0]}")
     if start > 0.5 * interval:
-        # What goes on from before has bent the body long since.
+        # The force before a continued record has already bent the body.
         force = force - force[0]
     return start, interval, force
 
 
 def _pressed(bridge: Bridge, panel: Panel, start: float, interval: float, force: Array) -> DrivenModes:
-    """Return how a track moves under the force, as one that presses against its normal."""
+    """Return the motion of a track under the force, taken as a normal force."""
     body = bridge.point.body
     across = float(in_space(body.axes[1]) @ bridge.along)
     if abs(across) < ACROSS:
@@ -141,13 +141,13 @@ def _pressed(bridge: Bridge, panel: Panel, start: float, interval: float, force:
     position = bridge.point.position
     x, y = position if isinstance(position, tuple) else panel.place(np.asarray(position))
     at = replace(panel, place=lambda abscissa: (np.full_like(abscissa, x), np.full_like(abscissa, y)))
-    # Samples stand at the ends of intervals; each is what one impulse in an interval is.
+    # Samples stand at the ends of intervals; each counts as a single impulse in its interval.
     still = np.zeros((1, force.size))
     return DrivenModes(at, Pressing(start, interval, 1, -across * force[None], still, interval))
 
 
 def _moved(bridge: Bridge, name: str, start: float, interval: float, force: Array) -> Moved:
-    """Return how a body in space moves under the force."""
+    """Return the motion of a body in space under the force."""
     body = bridge.point.body
     modes = body.modes()
     row = bridge.along @ body.trace(bridge.point.position)

@@ -1,4 +1,4 @@
-"""Impulse responses of what arrives from many points, each after its own time, on a grid of samples."""
+"""Impulse responses of sound that arrives from many points, each after its own time, on a grid of samples."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ ATTENUATION = 100.0
 
 @dataclass(frozen=True)
 class Interpolation:
-    """A sinc under a Kaiser window, which delays by any share of a sample.
+    """Kaiser-windowed sinc, which delays by any fraction of a sample.
 
-    Exact to `ATTENUATION` up to the bandwidth that `interpolation` made it for (Kaiser 1974: an attenuation A in dB and
-    a transition D, a share of the sample rate, ask for ``(A - 8) / (2.285 2 pi D)`` taps).
+    Exact to `ATTENUATION` up to the bandwidth given to `interpolation` (Kaiser 1974: an attenuation A in dB and a
+    transition D, a fraction of the sample rate, require ``(A - 8) / (2.285 2 pi D)`` taps).
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Interpolation:
 
 
 def interpolation(share: float, attenuation: float = ATTENUATION) -> Interpolation:
-    """Return the interpolation that is right up to `share` of the sample rate, below one half."""
+    """Return the interpolation that is accurate up to `share` of the sample rate, below one half."""
     taps = (attenuation - 8.0) / (2.285 * 2.0 * np.pi * (1.0 - 2.0 * share))
     return Interpolation(half_span=int(np.ceil(taps / 2.0)) + 1, beta=0.1102 * (attenuation - 8.7))
 
@@ -86,20 +86,20 @@ def span(least: float, largest: float, kernel: Interpolation) -> tuple[int, int]
 
 
 def add(to: Response, delays: Array, strengths: Array, kernel: Interpolation, derivative: bool = False) -> None:
-    """Add what arrives from points.
+    """Add the sound that arrives from points.
 
     Parameters
     ----------
     to : Response
-        What it is added to.
+        The response to which it is added.
     delays : ndarray, shape (points,)
         Travel times in samples.
     strengths : ndarray, shape (points, modes)
-        What each mode sends from each point.
+        Strength of each mode at each point.
     kernel : Interpolation
         The interpolation.
     derivative : bool, optional
-        Whether what arrives is the derivative per sample of what was sent.
+        Whether the derivative per sample of the strengths arrives.
     """
     whole = np.floor(delays).astype(np.int64)
     rows = whole[:, None] + np.arange(1 - kernel.half_span, kernel.half_span + 1)

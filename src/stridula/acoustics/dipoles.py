@@ -51,9 +51,9 @@ def _of_a_rectangle(section: Rectangle) -> float:
 
 
 def _side(middle: float, corner: float) -> float:
-    """Return half a side of the rectangle whose first corner is at an angle, over C; `middle` is that of the side."""
+    """Return half a side of the rectangle whose first corner is at an angle, over C; `middle` is the side's angle."""
     reach = corner if middle == 0.0 else pi / 2.0 - corner
-    # With t = reach sin(s) about the side's middle the root at the corner is smooth.
+    # With t = reach sin(s) about the side's middle, the square root at the corner is smooth.
     nodes, weights = np.polynomial.legendre.leggauss(60)
     turn = (nodes + 1.0) * pi / 4.0
     angle = middle - reach * np.sin(turn)
@@ -73,9 +73,9 @@ def dipole_response(
 ) -> Response:
     """Return the impulse responses from the acceleration of each mode of a beam to the pressure at a listener.
 
-    A force F per length on the air, along z, sounds like the integral along the line of
+    The pressure of a force F per length on the air, along z, is the integral along the line of
     ``z / (4 pi R²) (F'(t - R/c) / c + F(t - R/c) / R)``
-    (Morse & Ingard 1968, Theoretical Acoustics, section 7.1), with ``F = rho area w''``. It holds where
+    (Morse & Ingard 1968, Theoretical Acoustics, section 7.1), with ``F = rho area w''``. This holds where
     the section is small against wavelength, distance and bending wavelength.
 
     Parameters
@@ -91,11 +91,11 @@ def dipole_response(
     interval : float
         Time between samples [s].
     kernel : Interpolation
-        How delays are put on the samples.
+        Interpolation of delays between samples.
     shift : float, optional
-        What is added to every delay, in samples.
+        Number of samples added to every delay.
     refinement : float, optional
-        By how much finer the line is cut than needed.
+        Factor by which the elements are smaller than needed.
     """
     # Largest wavenumber that samples can carry.
     points, lengths = line_of_points(panel, listener, pi / (air.speed * interval), refinement)

@@ -1,4 +1,4 @@
-"""How far listeners are from the surface of a body, and that they are outside of it."""
+"""Distances of listeners from the surface of a body, and a check that they are outside of it."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from ..bodies.body_surfaces import BodySurface
 from ..checks import ArgumentError, at_least
 from .flat_patches import patch_integrals
 
-# Of the size of a body: no listener comes closer.
+# Smallest distance of a listener over the size of the body.
 NEAREST = 1e-3
 
 
 def distances_to(surface: BodySurface, places: Array, origin: Array | None = None) -> Array:
-    """Return the distances of places to the nearest points of a surface [m], its origin at `origin` if given.
+    """Return the distances of places to the nearest points of a surface [m], with its origin at `origin` if given.
 
     Raises
     ------
@@ -28,7 +28,7 @@ def distances_to(surface: BodySurface, places: Array, origin: Array | None = Non
         away = points.points - own
         distance = np.linalg.norm(away, axis=1)
         if surface.form == "points":
-            # As the patches are, for a body may be thinner than they are long.
+            # Exact for patches, as a body may be thinner than its patches are long.
             corners = points.corners.reshape(-1, 4, 3)
             angle = float(patch_integrals(np.repeat(own[None], len(corners), axis=0), corners)[1].sum())
         else:

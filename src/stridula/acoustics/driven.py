@@ -1,20 +1,20 @@
-"""Accelerations of the modes of a track, driven again by the recorded force where it pressed.
+"""Accelerations of the modes of a track, driven again by the recorded forces at the recorded places.
 
-The march gives a mode impulses, one a step, and moves it exactly between them. A record has their sum over each sample
-interval H, so the recurrence of the exact modal scheme at H, ``q[n+1] = a q[n] - b q[n-1] + c H f[n]``, has every
-natural frequency and every decay exact, and is the motion of the march itself where each step is a sample. Two things
-are left to put right:
+The march gives a mode one impulse in each step and moves it exactly between them. A record has their sum over each
+sample interval H, so the recurrence of the exact modal scheme at H, ``q[n+1] = a q[n] - b q[n-1] + c H f[n]``, has
+every natural frequency and every decay exact, and is the motion of the march itself where each step is a sample. Two
+corrections remain:
 
 - The mean over R steps lowers the force at the frequency f by ``sin(pi f H) / (R sin(pi f H / R))``; a short symmetric
   filter raises it again, up to 5/12 of the sample rate.
-- A second difference of q is not its acceleration. What is missing between the two is smooth in frequency, for the
-  poles are the same, and seven taps make it up: least squares of the relative error up to 5/12 of the sample rate.
+- A second difference of q is not its acceleration. The ratio of the two is smooth in frequency, as they have the same
+  poles, and seven taps approximate it: least squares of the relative error up to 5/12 of the sample rate.
 
-For modes and sound below a fifth of the sample rate an answer is then right to 0.1 % without damping and to 0.05 % of
-it per percent of critical damping; below 5/12 of it to 0.3 % and 0.15 %. Overdamped modes have two real poles in the
-place of a pair. A force held constant over each interval instead would be half of it late, and lowered by the mean
-once more. What the force has above half the sample rate folds down, less the attenuation of the mean, as in any record
-of means.
+For modes and sound below a fifth of the sample rate a response is then accurate to 0.1 % without damping and to 0.05 %
+of it per percent of critical damping; below 5/12 of it to 0.3 % and 0.15 %. Overdamped modes have two real poles
+instead of a pair. A force held constant over each interval would be late by half of it, and lowered by the mean once
+more. Frequencies of the force above half the sample rate are aliased, less the attenuation of the mean, as in any
+record of means.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ from ..arrays import Array
 from .panels import Panel
 from .recorded import Pressing
 
-# Samples on each side over which a mean is undone; also what is put before the record's start and after its end.
+# Samples on each side over which a mean is undone; as many are put before the record's start and after its end.
 LEAD = 16
 # Share of the sample rate up to which a mean is undone.
 UNDONE = 5.0 / 12.0
 # Phase of a mode over a sample interval above which it is left out [rad].
 FASTEST = 0.95 * np.pi
-# Samples ahead and back from which accelerations are made, and frequencies at which that is fitted.
+# Samples ahead and back from which accelerations are computed, and number of frequencies of the fit.
 DEGREE, FITTED = 3, 120
-# Differences of a number of times.
+# Coefficients of no, a first and a second difference.
 DIFFERENCES = ((1.0,), (1.0, -1.0), (1.0, -2.0, 1.0))
 
 
@@ -46,10 +46,10 @@ DIFFERENCES = ((1.0,), (1.0, -1.0), (1.0, -2.0, 1.0))
 def undo_mean(steps: int) -> Array:
     """Return the symmetric filter that undoes a mean over `steps` values, shape (2 LEAD + 1,).
 
-    Least squares over frequencies up to `UNDONE`, where it is right to 1e-5.
+    Least squares over frequencies up to `UNDONE`, accurate to 1e-5 there.
     """
     frequency = np.linspace(0.0, UNDONE, 400)
-    # The limit of many steps is the sinc.
+    # The limit for many steps is the sinc.
     many = np.sinc(frequency) if steps > 1000 else np.sinc(frequency) / np.sinc(frequency / steps)
     cosines = 2.0 * np.cos(2.0 * np.pi * frequency[:, None] * np.arange(LEAD + 1))
     cosines[:, 0] = 1.0
@@ -85,7 +85,7 @@ def accelerations(panel: Panel, pressing: Pressing) -> Array:
     Returns
     -------
     ndarray, shape (modes, samples + 2 LEAD)
-        Accelerations [m kg^(1/2) / s²], `first_time` says when.
+        Accelerations [m kg^(1/2) / s²], the first at `first_time`.
     """
     return respond(panel, modal_forces(panel, pressing), pressing.interval)
 
@@ -107,27 +107,27 @@ def modal_forces(panel: Panel, pressing: Pressing) -> Array:
 
 
 class DrivenModes:
-    """Modes of a track that recorded forces drive again, at rest before them.
+    """Modes of a track driven again by recorded forces, at rest before them.
 
     Parameters
     ----------
     panel : Panel
-        Its modes.
+        The modes of the track.
     pressing : Pressing
         The forces.
 
     Attributes
     ----------
     start, interval : float
-        When the record begins, and its sample interval [s].
+        Time at which the record begins, and its sample interval [s].
     samples : int
         Number of its samples.
     first : float
         Time of the first acceleration [s].
     begins : float or None
-        When the sample interval begins in which it is first pressed [s from the start], None if it is not.
+        Begin of the sample interval in which a force first acts [s from the start], None if none does.
     notes : list of str
-        What is missing, in words.
+        Notes on what is missing.
     """
 
     words = "driven again"
@@ -142,7 +142,7 @@ class DrivenModes:
         self.notes = [continues] if pressing.start > 0.5 * pressing.interval else []
 
     def carried(self, angular_frequency: Array) -> Array:
-        """Return the numbers of the modes that samples can carry."""
+        """Return the numbers of the modes that the sample rate can represent."""
         return np.flatnonzero(angular_frequency * self.interval < FASTEST)
 
     def accelerations(self, modes: Any) -> Array:
@@ -151,7 +151,7 @@ class DrivenModes:
 
 
 class Oscillators(Protocol):
-    """Modes as far as forces move them."""
+    """Modes as oscillators under forces."""
 
     @property
     def angular_frequency(self) -> Array:
@@ -164,7 +164,7 @@ class Oscillators(Protocol):
 
 @dataclass(frozen=True)
 class Modes:
-    """Modes as far as forces move them.
+    """Modes as oscillators under forces.
 
     Attributes
     ----------
@@ -179,7 +179,7 @@ class Modes:
 def respond(modes: Oscillators, forces: Array, interval: float, derivative: int = 2) -> Array:
     """Return the accelerations of modes under impulses ``interval * forces``, shape (modes, samples).
 
-    Or their velocities or displacements, the `derivative` of that number.
+    With a `derivative` of 1 or 0, their velocities or displacements.
     """
     found = np.empty_like(forces)
     for row, force, taps in zip(found, forces, filters(modes, interval, derivative), strict=True):
@@ -189,9 +189,9 @@ def respond(modes: Oscillators, forces: Array, interval: float, derivative: int 
 
 
 def filters(modes: Oscillators, interval: float, derivative: int = 2) -> list[tuple[Array, Array]]:
-    """Return for each mode numerator and poles that make its accelerations, `DEGREE` samples late, of impulses.
+    """Return for each mode the numerator and poles of its accelerations, `DEGREE` samples late, under impulses.
 
-    Or its velocities or displacements, the `derivative` of that number.
+    With a `derivative` of 1 or 0, of its velocities or displacements.
     """
     turned = 2.0 * np.pi * np.linspace(0.0, UNDONE, FITTED + 1)[1:]
     late, angular = np.exp(-1j * turned), turned / interval

@@ -1,10 +1,10 @@
 """Sources within a body whose sound moves the air at its surface as the body does.
 
-Wave superposition (Koopmann, Song & Fahnline 1989, J. Acoust. Soc. Am. 86, 2433-2438): what a body sends out is the
-field of sources within it, whatever they are, once that field has the body's normal acceleration a all over the
-surface, ``dp/dn = -rho a``. Strengths are found by least squares with Tikhonov's term, as sources that lie deep would
-else grow without bound. Every other source lies deeper: on one surface they could not make all fields at the
-frequencies at which the inside of that surface resonates.
+Wave superposition (Koopmann, Song & Fahnline 1989, J. Acoust. Soc. Am. 86, 2433-2438): the sound of a body is the
+field of any sources within it whose field has the body's normal acceleration a all over the surface,
+``dp/dn = -rho a``. The strengths follow from least squares with Tikhonov regularisation, as those of deep sources
+would otherwise grow without bound. Every other source lies deeper: sources on a single surface cannot produce all
+fields at the frequencies at which the inside of that surface resonates.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ import scipy.linalg
 
 from ..arrays import Array
 
-# Share of the largest singular value, that of columns of unit length, at which strengths are held back.
+# Regularisation: fraction of the largest singular value of the matrix with columns of unit length.
 HELD_BACK = 1e-7
-# Depth of sources: of the distance to their neighbours, and of the radius of the ball within the body, at most; how
-# much deeper every other one is.
+# Largest depth of sources over the distance to their neighbours and over the radius of the ball within the body, and
+# factor by which every other one is deeper.
 DEPTH_OF_SPACING, DEPTH_OF_BALL, DEEPER = 1.5, 0.6, 1.2
 
 
@@ -50,9 +50,9 @@ class Fit(NamedTuple):
     Attributes
     ----------
     strengths : tuple of ndarray
-        Strengths of the sources for each mode, as the radiator has them.
+        Strengths of the sources for each mode, in the form of the radiator.
     errors : ndarray, shape (modes,)
-        Relative errors of the normal motion that they leave on the surface.
+        Relative errors of the normal motion over the surface.
     """
 
     strengths: tuple[Array, ...]
@@ -60,13 +60,13 @@ class Fit(NamedTuple):
 
 
 def depths(spacing: Array, ball: Array) -> Array:
-    """Return how deep below the surface sources lie [m], by their spacing and the radii of balls that fit there [m]."""
+    """Return the depths of sources below the surface [m], from their spacing and the radii of inscribed balls [m]."""
     deeper = np.where(np.arange(len(spacing)) % 2, DEEPER, 1.0)
     return np.asarray(deeper * np.minimum(DEPTH_OF_SPACING * spacing, DEPTH_OF_BALL * ball))
 
 
 def least_squares(matrix: Array, wanted: Array, held_back: float = 0.0) -> Array:
-    """Return what solves equations in least squares, by normal equations, for several right-hand sides.
+    """Return the least-squares solution of equations, by normal equations, for several right-hand sides.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def least_squares(matrix: Array, wanted: Array, held_back: float = 0.0) -> Array
     wanted : ndarray, shape (equations, sides)
         The right-hand sides.
     held_back : float, optional
-        Share of the largest singular value, about, at which unknowns are held back (Tikhonov's term).
+        Tikhonov regularisation, about a fraction of the largest singular value.
 
     Returns
     -------
@@ -92,14 +92,14 @@ def least_squares(matrix: Array, wanted: Array, held_back: float = 0.0) -> Array
     except np.linalg.LinAlgError:
         if matrix.dtype != np.complex64:
             raise
-        # Single precision has seven digits, of which the square of a condition above some thousands leaves none.
+        # Normal equations square the condition: above some thousands, the seven digits of single precision are lost.
         return _by_normal_equations(matrix.astype(complex), wanted, held_back).astype(matrix.dtype)
 
 
 def _by_normal_equations(matrix: Array, wanted: Array, held_back: float) -> Array:
-    """Return what solves equations in least squares, by Cholesky's factors of their normal equations."""
+    """Return the least-squares solution of equations, by Cholesky factors of their normal equations."""
     solve = scipy.linalg.cho_solve
-    # In real numbers, as products of a matrix with itself take half the time, and other threads go on meanwhile.
+    # In real numbers, as products of a matrix with itself take half the time and let other threads run.
     parts = np.concatenate([matrix.real, matrix.imag])
     real, mixed = parts.T @ parts, parts[: len(matrix)].T @ parts[len(matrix) :]
     square = real + 1j * (mixed - mixed.T)
@@ -109,37 +109,37 @@ def _by_normal_equations(matrix: Array, wanted: Array, held_back: float) -> Arra
     adjoint, wanted = matrix.conj().T, wanted.astype(matrix.dtype)
     found = solve(factor, adjoint @ wanted, check_finite=False)
     if not held_back:
-        # The square has the condition of the matrix squared; what that costs is put right.
+        # The normal equations square the condition of the matrix; one refinement restores the accuracy.
         found += solve(factor, adjoint @ (wanted - matrix @ found), check_finite=False)
     return np.asarray(found)
 
 
 def fitted(matrix: Array, wanted: Array, areas: Array, spacing: Array) -> tuple[Array, Array]:
-    """Return strengths that make a matrix yield what is wanted, in least squares, and the errors left.
+    """Return the strengths that fit the wanted values in least squares, and the remaining errors.
 
-    Squares are weighted by the areas and by the spacing of the points, which falls towards edges: there the air flows
-    round the body at velocities without limit, whose error would else be spread over all of the surface.
+    Squares are weighted by the areas and by the spacing of the points, which falls towards edges: there the velocity
+    of the air is unbounded, and its error would otherwise spread over the whole surface.
 
     Parameters
     ----------
     matrix : ndarray, shape (points, sources)
-        What each source of unit strength yields at the points.
+        Value of each source of unit strength at the points.
     wanted : ndarray, shape (points, modes)
-        What is wanted there.
+        Values wanted there.
     areas, spacing : ndarray, shape (points,)
-        Areas of the points, and distances between them, each to a scale.
+        Areas of the points, and distances between them, each up to a constant factor.
 
     Returns
     -------
     strengths : ndarray, shape (sources, modes)
         The strengths.
     errors : ndarray, shape (modes,)
-        Root mean square of what is missing over that of what is wanted, with these weights; 0 where nothing is wanted.
+        Weighted root mean square of the residual over that of the wanted values; 0 where these are zero.
     """
     weights = np.sqrt(areas * spacing)[:, None]
     rows, aims = matrix * weights, wanted * weights
     sizes = np.linalg.norm(rows, axis=0)
-    # Rings so close to the axis that waves round it leave nothing of them.
+    # The fields of rings very close to the axis vanish for waves round it.
     sizes = np.where(sizes > 0.0, sizes, 1.0)
     rows = rows / sizes
     strengths = least_squares(rows, aims, HELD_BACK) / sizes[:, None]

@@ -1,4 +1,4 @@
-"""Fits of a body in open air at many frequencies: made once, on all processors, and kept for other processes."""
+"""Fits of a body in open air at many frequencies: computed once, on all processors, and cached for other processes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ RADIATORS: dict[str, Callable[[Any], Radiator]] = {
     "points": SurfacePressures,
     "sheet": SheetDipoles,
 }
-# What fits depend on beside a surface and a wavenumber.
+# Files whose code fits depend on.
 SOURCES = (
     "equivalent_sources.py",
     "ring_sources.py",
@@ -36,7 +36,7 @@ SOURCES = (
     "sheets.py",
     "fits.py",
 )
-# Time that making fits takes from which on they are kept [s], and bytes up to which they are.
+# Time taken by fits above which they are cached [s], and largest size of cached fits [bytes].
 WORTH, LARGEST = 1.0, 125_000_000
 
 
@@ -56,21 +56,21 @@ class Fits:
         self.took = 0.0
 
     def at(self, wavenumbers: Sequence[float]) -> list[Fit]:
-        """Return the fits at wavenumbers [rad/m]; those that are new are made on all processors."""
+        """Return the fits at wavenumbers [rad/m]; new ones are computed on all processors."""
         if self.known is None:
             self.known = _fits(recall(self.name))
         new = [one for one in wavenumbers if one not in self.known]
         began = time.perf_counter()
         # Matrices are too small for threads of linear algebra to help.
         with threadpool_limits(1), ThreadPoolExecutor(os.cpu_count()) as pool:
-            # What all fits share is made by the first.
+            # The first one computes what all fits share.
             self.known.update((one, self.radiator.fit(one)) for one in new[:1])
             self.known.update(zip(new[1:], pool.map(self.radiator.fit, new[1:]), strict=True))
         self.took += time.perf_counter() - began
         return [self.known[one] for one in wavenumbers]
 
     def keep(self) -> None:
-        """Keep what has been found for other processes, if it took long enough and leaves room for others."""
+        """Cache the fits for other processes, if they took long enough and are not too large."""
         if self.known and self.took > WORTH:
             arrays = _arrays(self.known)
             if sum(one.nbytes for one in arrays.values()) <= LARGEST:
@@ -80,13 +80,13 @@ class Fits:
 
 @lru_cache(maxsize=8)
 def fits_of(surface: BodySurface | Sheet) -> Fits:
-    """Return the fits of a body by its surface; they are kept for the bodies asked for last."""
+    """Return the fits of a body by its surface; those of the latest bodies are kept."""
     return Fits(surface)
 
 
 @lru_cache(maxsize=1)
 def _code() -> bytes:
-    """Return what another version of the package has otherwise."""
+    """Return the code that fits depend on, which may differ in another version of the package."""
     return b"".join((files(__package__) / name).read_bytes() for name in SOURCES)
 
 

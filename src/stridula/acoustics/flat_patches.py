@@ -1,7 +1,7 @@
 """Integrals over flat patches in closed form.
 
-With x from a place to a point of the patch and R = |x|, edge by edge (Wilton et al. 1984, IEEE Trans. Antennas Propag.
-32, 276-281): of 1 / R, and of x . n / R³, which is the solid angle of the patch, positive where it is seen from behind.
+Integrals of 1 / R and of x . n / R³, with x from a place to a point of the patch and R = |x|, edge by edge (Wilton et
+al. 1984, IEEE Trans. Antennas Propag. 32, 276-281). The latter is the solid angle of the patch, positive from behind.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ import numpy as np
 
 from ..arrays import Array
 
-# Of the size of a patch: edges shorter than this are none, places nearer to the line of an edge lie on it.
+# Fraction of the size of a patch below which edges have no length and places lie on the line of an edge.
 NONE = 1e-12
-# Share of its size within which a place lies in the plane of a patch.
+# Fraction of the size of a patch within which a place lies in its plane.
 FLAT = 1e-9
 
 
@@ -22,7 +22,7 @@ def patch_integrals(places: Array, corners: Array) -> tuple[Array, Array]:
     Parameters
     ----------
     places : ndarray, shape (places, 3)
-        Where they are wanted [m].
+        Places [m].
     corners : ndarray, shape (places, 4, 3)
         Corners of the patches, round their normals [m]; two may coincide.
     """
@@ -48,5 +48,5 @@ def patch_integrals(places: Array, corners: Array) -> tuple[Array, Array]:
         rise = np.where(counts, np.arcsinh(high / beside) - np.arcsinh(low / beside), 0.0)
         inverse += outward * rise - above * turn
         angle += turn
-    # From within its plane a patch is not seen.
+    # From within its plane a patch has no solid angle.
     return inverse, np.where(above > FLAT * np.linalg.norm(first, axis=1), np.sign(height), 0.0) * angle

@@ -92,9 +92,9 @@ def bodies_sound(
 ) -> tuple[Array, Array, Array, dict[str, Any], dict[str, Moved]]:
     """Return pressures (listeners, samples), their times, the listeners, attributes and the motion of each body.
 
-    All motions have the samples of one record.
-    Listeners left out are two ears along the first of the directions `above` from their middle, side by side along the
-    second one. What is beside a baffle is heard by the listeners and by their images in it.
+    All motions have the samples of one record. If `listener` is None, two ears are taken: above the middle of the
+    bodies along the first direction of `above`, side by side along the second one. Bodies in front of a baffle are
+    heard by the listeners and by their images in it.
 
     Raises
     ------
@@ -149,17 +149,19 @@ def bodies_sound(
 
 
 def chosen(system: System, bodies: Sequence[Any] | None, heard: list[Any]) -> tuple[list[Any], list[str]]:
-    """Return those of the bodies heard that are wanted, and the names of others that are silent where all are wanted.
+    """Return the audible bodies that are wanted and, if all are wanted, the names of the silent ones.
 
     Raises
     ------
     ValueError
-        If there are none, or one that is wanted cannot be heard.
+        If there are none, or a selected one has no surface.
     """
     silent = [system.body_name(body) for body in system.bodies if body not in heard]
     if bodies is None:
         if not heard:
-            raise ArgumentError("system", "have a body with a surface to be heard", got=f"none of {listed(silent)}")
+            raise ArgumentError(
+                "system", "have a body with a surface, which radiates sound", got=f"none of {listed(silent)}"
+            )
         return heard, silent
     if isinstance(bodies, str) or not isinstance(bodies, Sequence) or not bodies:
         raise ArgumentError("bodies", "be one or more bodies of the system", bodies)
@@ -171,7 +173,7 @@ def chosen(system: System, bodies: Sequence[Any] | None, heard: list[Any]) -> tu
 
 
 def _ears(above: tuple[Array, Array], heard: Sequence[Sounding]) -> list[list[float]]:
-    """Return two ears above the middle of what is heard, along a normal and side by side along a tangent."""
+    """Return two ears above the middle of the bodies, along a normal and side by side along a tangent."""
     normal, tangent = above
     points = np.concatenate([one.points for one in heard])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
@@ -188,7 +190,7 @@ def convolved(responses: Sequence[Response], moved: Moved, modes: Array) -> Arra
 
 
 def ends_of(heard: dict[str, Modes], moved: Moved | None) -> list[str]:
-    """Return where the modes of bodies end, by the names of these, in words."""
+    """Return notes on the highest modes of bodies by name."""
     notes = []
     if moved is not None and moved.left_out.any():
         left_out = int(moved.left_out.sum())
@@ -199,7 +201,7 @@ def ends_of(heard: dict[str, Modes], moved: Moved | None) -> list[str]:
 
 
 def lacks(system: System, heard: Sequence[Any], silent: Sequence[str], motions: Iterable[Moved]) -> list[str]:
-    """Return what is left out, in words."""
+    """Return notes on what is left out."""
     notes = []
     if silent:
         notes.append(f"without a surface and not heard: {listed(silent)}")
@@ -213,5 +215,5 @@ def lacks(system: System, heard: Sequence[Any], silent: Sequence[str], motions: 
     if moved.start > 0.5 * moved.interval:
         notes.append("the record continues another one; vibration left from that one is not included")
     elif started := [str(drive) for drive in system.drives if drive.starts_motion]:
-        notes.append(f"the vibration that it starts with is not included: {listed(started)}")
+        notes.append(f"vibration at the start is not included: {listed(started)}")
     return notes

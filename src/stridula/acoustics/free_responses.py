@@ -1,4 +1,4 @@
-"""What a body in open air sends to a listener: an impulse response for each of its modes, from fits at frequencies."""
+"""Impulse responses from the modes of a body in open air to listeners, from fits at frequencies."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ from .delays import Response
 from .fits import fits_of
 from .sheets import Sheet
 
-# Frequency above which nothing is left of a response, over the bandwidth.
+# Frequency above which responses are zero, over the bandwidth.
 STOP = 1.2
-# Up to where responses are whole, and where nothing is left of them, over the frequency of the highest mode: beyond it
-# a body moves as modes do that are not known.
+# Frequencies up to which responses are complete and from which they are zero, over that of the highest mode: beyond it
+# a body moves in modes that are not known.
 WHOLE_BEYOND, STOP_BEYOND = 1.2, 1.6
 # Length of a response in times of travel through the body, and in periods of the width between bandwidth and stop.
 TRAVELS, PERIODS = 2.0, 6.0
-# Share of the largest value of a response that may be left late in it, before frequencies are taken twice as close, and
-# how often.
+# Fraction of the largest value of a response that may remain late in it before frequencies are taken twice as densely,
+# and largest number of attempts.
 LEFT, TIMES = 5e-3, 3
 
 
 @dataclass(frozen=True)
 class Sent:
-    """What a body sends to listeners.
+    """Impulse responses of a body at listeners.
 
     Attributes
     ----------
     responses : list of Response
         Impulse responses of the modes at each listener, from acceleration to pressure.
     frequencies : ndarray, shape (frequencies,)
-        Where fits were made [Hz].
+        Frequencies of the fits [Hz].
     errors : ndarray, shape (frequencies, modes)
         Relative errors of the normal motion over the surface.
     left : float
-        What is left of the responses where they are least in their later half, over their largest values.
+        Smallest remainder of the responses in their later half, over their largest values.
     """
 
     responses: list[Response]
@@ -59,16 +59,16 @@ def free_responses(
 ) -> Sent:
     """Return the impulse responses of the modes of a body in open air.
 
-    The travel time from the nearest point of the surface is taken off the phases at the frequencies and put back as an
-    exact delay. Responses are whole up to the bandwidth and fall to nothing at 1.2 times that, or from 1.2 to 1.6 times
-    the frequency of the highest mode where that is less.
+    The travel time from the nearest point of the surface is removed from the phases at the frequencies and added again
+    as an exact delay. Responses are complete up to the bandwidth and fall to zero at 1.2 times that, or from 1.2 to 1.6
+    times the frequency of the highest mode where that is less.
 
     Parameters
     ----------
     surface : PointSurface, RingSurface or Sheet
         The surface of the body.
     places : ndarray, shape (listeners, 3)
-        Where one listens [m].
+        Places of the listeners [m].
     distances : ndarray, shape (listeners,)
         Distances to the nearest points of the surface [m].
     air : Air
@@ -76,9 +76,9 @@ def free_responses(
     interval : float
         Time between samples [s].
     shift : float
-        What is added to every delay, in samples.
+        Number of samples added to every delay.
     bandwidth : float
-        Frequency up to which responses are whole [Hz].
+        Frequency up to which responses are complete [Hz].
     highest : float, optional
         Frequency of the highest mode [Hz].
     """
@@ -115,15 +115,15 @@ def _taper(frequencies: Array, whole: float, stop: float) -> Array:
 def _taps(
     heard: Array, lasts: float, early: float, delay: float, interval: float, shift: float
 ) -> tuple[Response, float]:
-    """Return a response from its values at frequencies, and what is left of it late, over its largest value."""
+    """Return a response from its values at frequencies, and its late remainder over its largest value."""
     first = int(np.ceil((delay - early) / interval + shift))
     count = int(lasts / interval)
     times = (first + np.arange(count) - shift) * interval - delay
     turned = np.exp(2j * np.pi / lasts * np.outer(times, np.arange(len(heard))))
     turned[:, 1:] *= 2.0
     taps = interval / lasts * (turned @ heard).real
-    # Of the loudest mode: what others leave is not heard beside it. Towards the end comes what fits that differ from
-    # one frequency to the next put before the next arrival, which does not get less with time.
+    # Relative to the loudest mode, which masks the others. Differences between fits at neighbouring frequencies appear
+    # towards the end, before the next arrival, and do not decay.
     size = float(np.abs(taps).max(initial=0.0))
     late = np.abs(taps[times > 0.5 * (lasts - early)]).max(axis=1, initial=0.0)
     pieces = np.array_split(late, max(1, int(late.size * interval / (0.25 * early))))

@@ -1,4 +1,4 @@
-"""Which bodies of a system can be heard."""
+"""Bodies of a system that can be heard."""
 
 from __future__ import annotations
 
@@ -11,30 +11,32 @@ from .plane_sound import check_plane, plane_bodies
 
 
 def hearable(system: System) -> list[Any]:
-    """Return the bodies of a system that `radiate` can hear.
+    """Return the bodies of a system whose sound `radiate` can compute.
 
-    In space those with a surface, plates and beams among them, in the plane tracks that are flat, and slim beams.
+    In space these have a surface, plates and beams among them; in the plane they are flat tracks and slim beams.
     """
     return bodies_heard(system) if system.is_spatial else plane_bodies(system)
 
 
 def check_hearable(system: System, surface_rate: float | str | None = None) -> None:
-    """Raise ValueError if nothing can be heard of a system.
+    """Raise ValueError if no body of a system can be heard.
 
     Parameters
     ----------
     system : System
         The system.
     surface_rate : float or str, optional
-        What is to be recorded of its surfaces, as for `simulate`: maps alone have no sound.
+        Rate of the maps of its surfaces, as for `simulate`: a record of maps alone has no sound.
     """
     if not hearable(system):
         names = [system.body_name(body) for body in system.bodies]
-        raise ArgumentError("system", "have a body with a surface to be heard", got=f"none of {listed(names)}")
+        raise ArgumentError(
+            "system", "have a body with a surface, which radiates sound", got=f"none of {listed(names)}"
+        )
     if not system.is_spatial:
         check_plane(system)
     if surface_rate is not None and not isinstance(surface_rate, str):
-        raise ArgumentError("surface_rate", "be left out, or all, to be heard", surface_rate)
+        raise ArgumentError("surface_rate", "be left out, or all, for sound", surface_rate)
 
 
 def body_named(system: System, name: str) -> Any:
@@ -47,5 +49,5 @@ def body_named(system: System, name: str) -> Any:
     """
     known = {system.body_name(body): body for body in hearable(system)}
     if name not in known:
-        raise ArgumentError("body", f"be one that can be heard: {listed(list(known)) or 'none'}", name)
+        raise ArgumentError("body", f"be a body that radiates sound: {listed(list(known)) or 'none'}", name)
     return known[name]

@@ -14,7 +14,7 @@ from .weighting import TIME_CONSTANTS, a_weighted, time_weighted
 # Reference sound pressure [Pa] (ISO 1683).
 REFERENCE = 20e-6
 WEIGHTINGS = ("Z", "A")
-# What weighted levels take: samples up to 20 kHz, and a period of 20 Hz.
+# Requirements of weighted levels: samples up to 20 kHz, and a period of 20 Hz.
 LOWEST_RATE, SHORTEST = 40e3, 0.05
 # Order of the band filters.
 ORDER = 6
@@ -31,7 +31,7 @@ def equivalent_level(pressure: xr.DataArray, weighting: str = "Z") -> xr.DataArr
     pressure : xarray.DataArray, shape (time,) or (time, listener)
         Sound pressure [Pa].
     weighting : {"Z", "A"}, optional
-        None, or A of IEC 61672-1, which takes samples at 40 kHz or more.
+        None, or A of IEC 61672-1, which requires samples at 40 kHz or more.
 
     Returns
     -------
@@ -82,8 +82,8 @@ def third_octave_levels(pressure: xr.DataArray, lowest: float = 25.0, highest: f
     """Return equivalent levels in the third-octave bands of IEC 61260-1 (base ten, class 1).
 
     The bands are analogue Butterworth filters of order 6, their mean squares taken from the spectrum of the whole sound
-    (Parseval). No filter has to settle, none is bent near half of the sample rate, and the bands add up to within
-    0.05 dB of the whole; a sound that starts at once spreads into other bands, as it does in any filter.
+    (Parseval). No filter has to settle, none is distorted near half of the sample rate, and the bands add up to within
+    0.05 dB of the whole; a sound that starts abruptly spreads into other bands, as it does in any filter.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def third_octave_levels(pressure: xr.DataArray, lowest: float = 25.0, highest: f
     check_rate(rate, 2.0 * centres[-1] * 10.0**0.05, f"a highest band of {highest:g} Hz")
     size = next_fast_len(2 * values.shape[0], real=True)
     frequency = rfftfreq(size, 1.0 / rate)
-    # Each frequency stands for its negative one, too.
+    # Each frequency also stands for its negative one.
     energy = 2.0 * np.abs(rfft(values, size, axis=0)) ** 2 / size
     squares = np.array([band_gain(frequency, centre) @ energy for centre in centres]) / values.shape[0]
     words = {"units": "Hz", "long_name": "nominal centre frequency"}

@@ -1,4 +1,4 @@
-"""Where one listens, checked."""
+"""Places of listeners, checked."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..bodies import ModalBeam, ModalPlate
 from ..checks import ArgumentError, at_least, at_most, finite, positive
 
 FARTHEST = 1000.0
-# Of a pair of ears, above what they hear and between them [m].
+# Height of a pair of ears above the source, and distance between them [m].
 HEIGHT, SPACING = 1.0, 0.18
 
 
@@ -42,17 +42,17 @@ def ears(
 
 
 def listeners_of(listener: Any) -> Array:
-    """Return one or several listeners as an array, shape (listeners, 3).
+    """Return listeners as an array, shape (listeners, 3).
 
     Raises
     ------
     ValueError
-        If it is no triple of finite numbers, no list of them, or is farther than 1000 m away.
+        If it is neither a triple of finite numbers nor a list of them, or is farther than 1000 m away.
     """
     if isinstance(listener, np.ndarray):
         listener = listener.tolist()
     if not isinstance(listener, Sequence) or isinstance(listener, (str, bytes)) or not listener:
-        raise ArgumentError("listener", "be (x, y, z) or a list of such", listener)
+        raise ArgumentError("listener", "be (x, y, z) or a list of these", listener)
     several = listener if isinstance(listener[0], (Sequence, np.ndarray)) else [listener]
     found = []
     for number, place in enumerate(several):
@@ -81,7 +81,7 @@ def check_in_front(listeners: Array) -> None:
 def check_off_beam(listeners: Array, length: float, radius: float, told: Array | None = None) -> None:
     """Raise ValueError if a listener is on a beam of a length whose section lies within a radius of its axis.
 
-    Messages have the listeners as they are `told`, if given.
+    Messages name the listeners as in `told`, if given.
     """
     for place, one in zip(listeners, listeners if told is None else told, strict=True):
         along = place[0] - min(max(place[0], 0.0), length)
@@ -95,7 +95,7 @@ def check_off_beam(listeners: Array, length: float, radius: float, told: Array |
 
 
 def check_off_panel(distances: Array, nearest: float, told: Array) -> None:
-    """Raise ValueError if a listener, as it is told, is nearer to a plate than allowed [m]."""
+    """Raise ValueError if a listener, named as in `told`, is nearer to a plate than allowed [m]."""
     for place, distance in zip(told, distances, strict=True):
         if distance < nearest:
             words = f"be at least {at_least(nearest, 3)} m from the plate"

@@ -1,4 +1,4 @@
-"""Sound that is played in notebooks."""
+"""Playable sound for notebooks."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ import xarray as xr
 from ..checks import choice
 from .wav import NORMALISED, SoundFile, wav_of
 
-# Of integers, which every browser plays.
+# Integer formats, which every browser plays.
 PLAYED = ("PCM_16", "PCM_24")
 
 
 @dataclass(frozen=True)
 class PlayableSound:
-    """A sound that notebooks show as a player; in print, one line that says it all.
+    """A sound that notebooks show as a player and print as a one-line summary.
 
     Attributes
     ----------
     wav : bytes
         The content of a WAV file.
     sound : SoundFile
-        What is in it.
+        Description of the content.
     """
 
     wav: bytes = field(repr=False)
@@ -34,7 +34,7 @@ class PlayableSound:
         return str(self.sound)
 
     def _repr_html_(self) -> str:
-        """Return a player of the sound that needs no file, and the line that says what it is."""
+        """Return a player of the sound that needs no file, and its one-line summary."""
         content = base64.b64encode(self.wav).decode("ascii")
         player = f'<audio controls preload="metadata" src="data:audio/wav;base64,{content}"></audio>'
         return f'<div>{player}<div style="font-size: smaller; opacity: 0.75">{escape(str(self))}</div></div>'
@@ -47,7 +47,7 @@ def listen(
     full_scale: float | str = NORMALISED,
     subtype: str = "PCM_16",
 ) -> PlayableSound:
-    """Return a sound as something that a notebook plays: the last line of a cell shows a player.
+    """Return a sound that a notebook plays: as the last line of a cell it shows a player.
 
     The sound is kept in the notebook, 0.26 MB for a second of two channels at 48 kHz and 16 bits. Two listeners, the
     left ear first, are heard in stereo. Nothing is ever clipped.
@@ -59,15 +59,15 @@ def listen(
     sample_rate : {48000, 44100, 96000}, optional
         Sample rate at which it is played [Hz].
     full_scale : float or "normalised", optional
-        Pressure of full scale [Pa]: sounds of the same full scale are as loud, one against the other, as what they
-        hold. Or ``"normalised"``: the peak comes to 1 dB below full scale.
+        Pressure of full scale [Pa]: sounds of the same full scale have the right loudness relative to each other. Or
+        ``"normalised"``: the peak is 1 dB below full scale.
     subtype : {"PCM_16", "PCM_24"}, optional
         Integers of 16 or 24 bits.
 
     Returns
     -------
     PlayableSound
-        The sound, in notebooks with a player.
+        The sound, shown with a player in notebooks.
 
     Raises
     ------

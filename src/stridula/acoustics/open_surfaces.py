@@ -1,4 +1,4 @@
-"""Bodies in open air by their closed surface: which modes sound, what they send, and what is doubtful of it."""
+"""Bodies in open air by their closed surface: modes that sound, their responses, and notes on doubtful ones."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from .distances import distances_to
 from .free_responses import LEFT, Sent, free_responses
 from .sheets import Sheet
 
-# Up to where their sound is whole at most [Hz]: what is heard.
+# Largest bandwidth of a sound [Hz], the limit of hearing.
 HIGHEST = 20e3
-# Error of the normal motion at a mode's own frequency from which on it is said.
+# Error of the normal motion at a mode's own frequency above which a note states it.
 SAID = 0.05
-# Share of the largest normal motion of all modes below which a mode does not sound.
+# Fraction of the largest normal motion of all modes below which a mode makes no sound.
 STILL = 1e-9
 
 
 @dataclass(frozen=True)
 class Heard:
-    """What a body sends to listeners.
+    """Sound of a body at listeners.
 
     Attributes
     ----------
@@ -37,9 +37,9 @@ class Heard:
     responses : list of Response
         Their impulse responses at each listener, from acceleration to pressure.
     error : float
-        Largest relative error of the fit of a mode at its own frequency; nan where nothing is fitted.
+        Largest relative error of the fit of a mode at its own frequency; nan without a fit.
     notes : list of str
-        What is doubtful, in words.
+        Notes on doubtful responses.
     """
 
     numbers: Array
@@ -48,7 +48,7 @@ class Heard:
     notes: Sequence[str] = ()
 
     def only(self, modes: Array) -> Heard:
-        """Return it with those of some modes that sound, by their numbers."""
+        """Return it with some of its modes, by number in the body."""
         kept = np.flatnonzero(np.isin(self.numbers, modes))
         return replace(
             self, numbers=self.numbers[kept], responses=[replace(one, taps=one.taps[:, kept]) for one in self.responses]
@@ -70,7 +70,7 @@ class OpenSurface:
     frequency : ndarray, shape (modes,)
         Their frequencies [Hz].
     origin : ndarray, shape (3,)
-        Where the origin of the surface is in the world [m].
+        Place of the origin of the surface in the world [m].
     """
 
     most: ClassVar[float] = HIGHEST
@@ -91,7 +91,7 @@ class OpenSurface:
         return distances_to(self.surface, places, self.origin)
 
     def heard(self, moving: Array, places: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
-        """Return what it sends, by fits at frequencies; for all its modes, as these fits are kept for the next run."""
+        """Return its sound, by fits at frequencies, for all its modes, as these fits are cached for the next run."""
         own, distances = places - self.origin, self.distances(places)
         return by_fits(
             self.name, self.surface, self.numbers, self.frequency, own, distances, air, interval, shift, bandwidth
@@ -110,7 +110,7 @@ def by_fits(
     shift: float,
     bandwidth: float,
 ) -> Heard:
-    """Return what the modes of a body in open air send, by fits at frequencies.
+    """Return the sound of the modes of a body in open air, by fits at frequencies.
 
     Parameters
     ----------
@@ -119,11 +119,11 @@ def by_fits(
     surface : PointSurface, RingSurface or Sheet
         Its surface.
     numbers : ndarray of int, shape (modes,)
-        The modes of the body that the surface has.
+        Numbers in the body of the modes of the surface.
     frequency : ndarray, shape (modes,)
         Their frequencies [Hz].
     places : ndarray, shape (listeners, 3)
-        Where one listens, in the axes of the surface [m].
+        Places of the listeners in the axes of the surface [m].
     distances : ndarray, shape (listeners,)
         Distances to the nearest points of the surface [m].
     air, interval, shift, bandwidth
@@ -131,7 +131,7 @@ def by_fits(
     """
     if not numbers.size:
         return Heard(numbers, [])
-    # A body that does not vibrate moves as a whole up to any frequency.
+    # A body that does not vibrate moves as a rigid one at any frequency.
     highest = float(frequency.max(initial=0.0)) or np.inf
     sent = free_responses(surface, places, distances, air, interval, shift, bandwidth, highest)
     notes, worst = _doubts(name, frequency, sent)
@@ -139,7 +139,7 @@ def by_fits(
 
 
 def open_surface(name: str, surface: BodySurface, modes: Modes, origin: Array, highest: float = np.inf) -> OpenSurface:
-    """Return a body by its closed surface, with the modes that move it outwards, up to a frequency [Hz]."""
+    """Return a body by its closed surface, with its modes of normal motion up to a frequency [Hz]."""
     frequency = modes.frequency[~modes.massless]
     moved = np.abs(surface.shapes).max(axis=0)
     sounds = (moved > STILL * moved.max(initial=0.0)) & (frequency <= highest)
@@ -155,18 +155,18 @@ def open_surface(name: str, surface: BodySurface, modes: Modes, origin: Array, h
 
 @lru_cache(maxsize=8)
 def _only(surface: BodySurface, numbers: tuple[int, ...]) -> BodySurface:
-    """Return a surface with some of its modes; the same one each time, as fits are kept by surface."""
+    """Return a surface with some of its modes; the same object each time, as fits are cached by surface."""
     return surface if len(numbers) == surface.shapes.shape[1] else surface.only(list(numbers))
 
 
 def _doubts(name: str, frequency: Array, sent: Sent) -> tuple[list[str], float]:
-    """Return what is doubtful of a body's responses, in words, and the largest error of a mode at its own frequency."""
+    """Return notes on doubtful responses of a body, and the largest error of a mode at its own frequency."""
     within = np.flatnonzero(frequency <= sent.frequencies[-1])
     own = np.array([np.interp(frequency[k], sent.frequencies, sent.errors[:, k]) for k in within])
     worst, notes = float(own.max(initial=0.0)), []
     if worst > SAID:
         at = frequency[within[int(own.argmax())]]
-        notes.append(f"{name}: its surface is met to {100.0 * worst:.2g} % at {at:.4g} Hz only")
+        notes.append(f"{name}: error of {100.0 * worst:.2g} % in its normal motion at {at:.4g} Hz")
     if sent.left > LEFT:
-        notes.append(f"{name}: {100.0 * sent.left:.2g} % of its sound rings on for longer than is heard")
+        notes.append(f"{name}: {100.0 * sent.left:.2g} % of its response lasts longer than is included")
     return notes, worst

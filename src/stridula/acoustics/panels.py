@@ -1,4 +1,4 @@
-"""Tracks as flat rectangles whose modes are sines: what the integrals over their surface need of them."""
+"""Tracks as flat rectangles whose modes are sines, as the integrals over their surface need them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Panel:
     length, width : float
         Sides along x and y [m]; x is zero at the left end.
     edge : float
-        Where it begins along y [m].
+        Smallest y [m].
     amplitude : float
         Largest value of a mass-normalised mode shape [kg^(-1/2)].
     wavenumbers : ndarray, shape (modes, 2)
@@ -55,13 +55,13 @@ class Panel:
         return np.broadcast_to(shapes, (*shapes.shape[:-1], len(along)))
 
     def distances(self, places: Array) -> Array:
-        """Return the distances of places x, y, z to its nearest points [m], shape (places,)."""
+        """Return the distances from places x, y, z to the nearest points of the panel [m], shape (places,)."""
         low = np.array([0.0, self.edge])
         away = places[:, :2] - np.clip(places[:, :2], low, low + np.array([self.length, self.width]))
         return np.asarray(np.hypot(np.hypot(away[:, 0], away[:, 1]), places[:, 2]))
 
     def only(self, modes: Any) -> Panel:
-        """Return the panel with the chosen modes, an index or a slice, only."""
+        """Return the panel with only the chosen modes, an index or a slice."""
         return replace(
             self,
             wavenumbers=self.wavenumbers[modes],

@@ -1,7 +1,7 @@
 """The sound of a system in the plane: its tracks, and its slim beams as lines of dipoles.
 
-A wall that tracks are flush with reflects what beams before it send: a listener hears them, and what a listener in the
-image behind the wall would hear.
+A wall that tracks are flush with reflects the sound of beams in front of it: their sound at the image of the listener
+behind the wall is added.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ LEVEL = 1e-9
 
 @dataclass(frozen=True)
 class _Axes:
-    """Where abscissas along a track are in the coordinates of its listeners: from an origin along a tangent."""
+    """Axes of a track in the coordinates of its listeners: an origin and a tangent."""
 
     origin: Array
     tangent: Array
@@ -68,7 +68,7 @@ def plane_sound(
     Raises
     ------
     ValueError
-        If nothing can be heard, a listener is where it cannot be heard, or the record is not usable.
+        If no body radiates sound, a listener is inside a body or behind the baffle, or the record is not usable.
     """
     run = record("run", run)
     tracks, beams = _tracks(system), _beams(system)
@@ -102,7 +102,7 @@ def plane_bodies(system: System) -> list[Any]:
 
 
 def check_plane(system: System) -> None:
-    """Raise ValueError if `plane_sound` would refuse tracks of a system, as they are heard by default."""
+    """Raise ValueError if `plane_sound` would refuse the tracks of a system with its default arguments."""
     tracks = _tracks(system)
     _wall(tracks, {one.body: one for one in outlines_of(system)[0]}, None)
     for track in tracks:
@@ -117,7 +117,7 @@ def _tracks(system: System) -> list[Any]:
 
 
 def _beams(system: System) -> list[Any]:
-    """Return the beams whose section is known, but for tracks."""
+    """Return the beams whose section is known, other than tracks."""
     tracks = _tracks(system)
     return [body for body in system.bodies if body not in tracks and _is_slim(body)]
 
@@ -132,7 +132,7 @@ def _wall(tracks: Sequence[Any], outlines: dict[Any, Outline], baffled: bool | N
     if baffled is False or (baffled is None and not tracks):
         return None
     if not tracks:
-        raise ArgumentError("baffled", "be False, or left out, without a track that can be heard", baffled)
+        raise ArgumentError("baffled", "be False, or left out, without a track that radiates sound", baffled)
     heights = [float(outlines[one].place[1]) for one in tracks]
     if max(heights) - min(heights) > LEVEL:
         raise ArgumentError("baffled", "be False where tracks do not lie in one plane", got=baffled or "left out")
@@ -155,7 +155,7 @@ def _axes(track: Any) -> _Axes:
 
 
 def _ears(heard: Sequence[Any], outlines: dict[Any, Outline]) -> list[tuple[float, float, float]]:
-    """Return two ears above the middle of what is heard."""
+    """Return two ears above the middle of the bodies."""
     ends = np.concatenate([outlines[body].ends for body in heard])
     middle, height = 0.5 * (ends[:, 0].min() + ends[:, 0].max()), ends[:, 1].max() + HEIGHT
     return [(float(middle + side * SPACING / 2.0), 0.0, float(height)) for side in (-1.0, 1.0)]
@@ -178,7 +178,7 @@ def _of_track(
     on_it = [number for number, contact in enumerate(system.contacts) if contact.path_body == track]
     pressing = run.isel(contact=on_it) if "contact" in run.dims else run
     if starts:
-        # It has stood so for long.
+        # It has been in equilibrium before.
         pressing = pressing.assign(normal_force=pressing["normal_force"] - pressing["normal_force"].isel(time=0))
     places = _axes(track).listeners(seen - [outline.place[0], 0.0, outline.place[1]])
     silence = (f"{name} is silent", "its forces never change" if starts else "the contact never presses")
@@ -186,7 +186,7 @@ def _of_track(
     if attributes["motion"] != RecordedModes.words and any(
         contact.touched_point and contact.touched_point.body == track for contact in system.contacts
     ):
-        attributes["notes"] += f"; what touches {name} at one point does not drive it here"
+        attributes["notes"] += f"; contacts at a fixed point of {name} do not drive it here"
     return pressure, time, attributes
 
 
@@ -235,14 +235,14 @@ def _of_beams(
 
 
 def _said(system: System, body: Any, beam: SlimBeam, reach: float, air: Air) -> list[str]:
-    """Return what is to be said of a beam, in words."""
+    """Return notes on a beam."""
     name = system.body_name(body)
     notes = [f"{name}: a line of dipoles, slim below {slim_below(body, air):.4g} Hz"]
     return [*notes, *travel_note(name, reach)]
 
 
 def _added(parts: Sequence[Part]) -> tuple[Array, dict[str, Any]]:
-    """Return the sum of sounds and what is known of all of them together."""
+    """Return the sum of sounds and their common attributes."""
     attributes = dict(parts[0][2])
     attributes["modes"] = sum(one["modes"] for *_, one in parts)
     attributes["motion"] = " or ".join(dict.fromkeys(one["motion"] for *_, one in parts))

@@ -1,4 +1,4 @@
-"""Sound pressures as plain arrays, and what is known of each listener as labelled ones."""
+"""Sound pressures as plain arrays, and values for each listener as labelled ones."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import xarray as xr
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, at_most, instance
 
-# Share of the sample interval by which samples may be off an even grid: rounding of times leaves far less.
+# Fraction of the sample interval by which samples may be off an even grid: rounding of times causes far less.
 EVEN = 1e-3
 
-# Share of a duration or a rate that rounding may take.
+# Relative rounding error allowed in durations and rates.
 ROUNDING = 1e-9
 
 
@@ -33,7 +33,7 @@ def channels(pressure: xr.DataArray) -> tuple[Array, float]:
     Raises
     ------
     ValueError
-        If it is anything else.
+        If it has other dimensions or units, or values that are not finite.
     """
     instance("pressure", pressure, xr.DataArray)
     if pressure.dims not in (("time",), ("time", "listener")) or pressure.sizes["time"] < 2 or not pressure.size:
@@ -46,7 +46,10 @@ def channels(pressure: xr.DataArray) -> tuple[Array, float]:
     values = pressure.values.astype(float).reshape(pressure.shape[0], -1)
     if not np.isfinite(values).all():
         raise ArgumentError(
-            "pressure", "be finite", pressure, got=f"{np.count_nonzero(~np.isfinite(values))} values that are not"
+            "pressure",
+            "be finite",
+            pressure,
+            got=f"{np.count_nonzero(~np.isfinite(values))} values that are infinite or NaN",
         )
     return values, 1.0 / _interval(pressure)
 
@@ -62,7 +65,7 @@ def _interval(pressure: xr.DataArray) -> float:
 
 
 def positions(pressure: xr.DataArray) -> Array | None:
-    """Return where the listeners are [m], shape (listeners, 3), or None if the coordinates x, y, z do not say."""
+    """Return the places of the listeners [m], shape (listeners, 3), or None without the coordinates x, y, z."""
     instance("pressure", pressure, xr.DataArray)
     if not all(name in pressure.coords and pressure[name].dims == ("listener",) for name in "xyz"):
         return None
@@ -75,11 +78,11 @@ def of_listeners(pressure: xr.DataArray, values: Array, name: str, units: str, m
     Parameters
     ----------
     pressure : xarray.DataArray, shape (time,) or (time, listener)
-        What was listened to.
+        Sound pressure at the listeners.
     values : ndarray, shape (listeners,)
         The numbers.
     name, units, meaning : str
-        What they are.
+        Their name, units and long name.
 
     Returns
     -------
@@ -96,13 +99,13 @@ def over_time(pressure: xr.DataArray, time: Array, values: Array, name: str, uni
     Parameters
     ----------
     pressure : xarray.DataArray, shape (time,) or (time, listener)
-        What was listened to.
+        Sound pressure at the listeners.
     time : ndarray, shape (times,)
         Times since its first sample [s].
     values : ndarray, shape (times, listeners)
         The signals.
     name, units, meaning : str
-        What they are.
+        Their name, units and long name.
 
     Returns
     -------
@@ -115,12 +118,12 @@ def over_time(pressure: xr.DataArray, time: Array, values: Array, name: str, uni
 
 
 def is_enough(value: float, least: float) -> bool:
-    """Return whether a duration or a rate is at least another one, but for rounding."""
+    """Return whether a duration or a rate is at least another one, up to rounding."""
     return value >= least * (1.0 - ROUNDING)
 
 
 def check_length(pressure: xr.DataArray, shortest: float, what: str) -> None:
-    """Raise ValueError if a pressure lasts less than `shortest` seconds, which `what` takes."""
+    """Raise ValueError if a pressure lasts less than `shortest` seconds, which `what` requires."""
     lasts = pressure.sizes["time"] * _interval(pressure)
     if not is_enough(lasts, shortest):
         got = at_most(lasts * (1.0 + ROUNDING), 3)
@@ -128,7 +131,7 @@ def check_length(pressure: xr.DataArray, shortest: float, what: str) -> None:
 
 
 def check_rate(rate: float, lowest: float, what: str) -> None:
-    """Raise ValueError if a sample rate is below `lowest` [Hz], which `what` takes."""
+    """Raise ValueError if a sample rate is below `lowest` [Hz], which `what` requires."""
     if not is_enough(rate, lowest):
         raise ArgumentError(
             "pressure", f"be sampled at {at_least(lowest)} Hz or more for {what}", got=f"{at_most(rate)} Hz"

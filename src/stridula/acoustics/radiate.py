@@ -33,55 +33,58 @@ def radiate(
 ) -> xr.DataArray:
     """Return the sound pressure of a track, or of the bodies of a system, in time.
 
-    The track is driven again by the normal forces of the record where they pressed, with all its bending modes, and
-    is heard through Rayleigh's integral with exact travel times (in a rigid baffle), as a sheet of dipoles (a plate in
-    free air) or as a line of them (a beam in free air). Bodies in space are driven again by all forces of the record at
-    their contacts and by the drives of the system, and are heard in open air: discs by equivalent sources within them,
-    meshed bodies by the pressure on their surface, plates as sheets of dipoles, beams as lines of dipoles where they
-    are slim at all frequencies of their modes and else by their surface. Bodies are at rest before the record, and the
+    The track, with all its bending modes, is driven again by the normal forces of the record at their places. Its sound
+    follows from Rayleigh's integral with exact travel times (in a rigid baffle), from a sheet of dipoles (a plate in
+    free air) or from a line of dipoles (a beam in free air). Bodies in space are driven again by all forces of the
+    record at their contacts and by the drives of the system, and radiate into open air: bodies of revolution by
+    equivalent sources within them, meshed bodies by the pressure on their surface, plates as sheets of dipoles, beams
+    as lines of dipoles if they are slim at all frequencies of their modes, otherwise by the pressure on their surface.
+    Bodies are at rest before the record, and the
     air does not act back on them.
 
-    Bodies whose motion the record has, see `ModalMotion`, move as that says and are not driven again.
+    Bodies whose motion is recorded, see `ModalMotion`, move as recorded and are not driven again.
 
-    Of a system in the plane its tracks are heard so, and its beams, such as the slider, as lines of dipoles driven
+    The same holds for the tracks of a system in the plane. Its beams, such as the slider, are lines of dipoles driven
     again by all forces at their contacts and by the drives; a baffle that tracks are flush with reflects their sound.
-    Of a system in space it does so if it is asked for: plates and beams of rectangular section are flush with it.
+    In space there is a baffle only with ``baffled=True``: plates and beams of rectangular section are flush with it.
 
     Parameters
     ----------
     run : xarray.Dataset
-        A record, with or without probes. All its contacts press on the track: choose with ``run.sel(contact=[...])``.
+        A record, with or without probes. All its contacts press on the track: select them with
+        ``run.sel(contact=[...])``.
     track : ModalBeam, ModalPlate, System or Bridge
-        What is heard. A track need not be the body of the run, but must be as long as where it is pressed. Of a system,
-        that of the run, the sum over its bodies is heard: in space over all that have a surface, in the plane over
-        tracks and slim beams. Of a bridge, the body that the recorded force on the support of a string drives.
+        Source of the sound. A track need not be the body of the run, but must reach as far as it is pressed. For a
+        system, that of the run, the sound is the sum over its bodies: in space over all that have a surface, in the
+        plane over tracks and slim beams. For a bridge, it is that of the body driven by the recorded force on the
+        support of a string.
     listener : tuple of float, or sequence of tuples, optional
-        Where one listens, x, y, z [m]: x along the track from its left end, y across it in its surface, from the axis
-        of a beam or from the first edge of a plate, z above it, on the slider's side. A pair of ears a metre above the
-        middle of the track if left out. These are the axes of a track in space, too, and those of the first track of a
-        system in the plane; without one they are world x, across the plane, and world y. Of a system in space they are
-        those of the world; the ears are then a metre above the middle of what is heard, on the side of the first
-        contact's tip. Plates and beams in space are where the bodies that they touch are, if these know their places,
-        else the track of the first contact begins at the origin.
+        Places of the listeners, x, y, z [m]: x along the track from its left end, y across it in its surface, from the
+        axis of a beam or from the first edge of a plate, z above it, on the slider's side. A pair of ears a metre above
+        the middle of the track if left out. A track in space has the same axes; a system in the plane has those of its
+        first track, or, without a track, world x, across the plane, and world y. For a system in space they are the
+        world axes; the ears are then a metre above the middle of the bodies, on the side of the first contact's tip.
+        Plates and beams in space are placed by the bodies that they touch if these have places in the world; otherwise
+        the track of the first contact begins at the origin.
     bodies : sequence of AxisymmetricBody, SolidBody, ModalBeam, ModalPlate or FiniteElementBeam, optional
-        Which bodies of a system are heard; all that can be if left out.
+        Bodies of a system to include; all that can be heard if left out.
     baffled : bool, optional
-        Whether flat surfaces are flush with an endless rigid wall: by default those of tracks are, but for bodies in
-        space, which are in open air, and for beams of a system in the plane without a track.
+        Whether flat surfaces are flush with an infinite rigid wall. By default those of tracks are, except for bodies
+        in space, which are in open air, and for beams of a system in the plane without a track.
     air : Air, optional
         The air, `Air()` if left out.
     sample_rate : float, optional
-        Samples per second of the sound [Hz], at most the record's, which it is if left out.
+        Sample rate of the sound [Hz], at most that of the record, which is the default.
 
     Returns
     -------
     xarray.DataArray, shape (time, listener)
-        Pressure [Pa]. Time starts where the record starts, when the first sound is sent; before it can arrive the
-        pressure is zero. ``attrs`` have the bandwidth [Hz], up to which the sound is whole and above which it is cut
-        off, the air, the distances [m] to the nearest point of the track, and notes on what is missing. ``motion`` is
-        "recorded", "driven again", or both. Of a system they have the names of the bodies heard and, as ``fit_error``,
-        the largest relative error with which the sources of each meet the normal motion of a mode all over the surface,
-        at the mode's own frequency, nan for plates and lines of dipoles; notes say it where it is above 5 %.
+        Pressure [Pa]. Time starts with the record, when the first sound is sent; until it arrives the pressure is zero.
+        ``attrs`` have the bandwidth [Hz], up to which the sound is complete and above which it is cut off, the air, the
+        distances [m] to the nearest point of the track, and notes on what is missing. ``motion`` is "recorded", "driven
+        again", or both. For a system they have the names of the bodies and, as ``fit_error``, for each the largest
+        relative error of its sources in the normal motion of a mode over the surface, at the mode's own frequency, nan
+        for plates and lines of dipoles; notes state it where it is above 5 %.
 
     Raises
     ------
@@ -126,7 +129,7 @@ def _of_a_bridge(
 
 def _check_no_bodies(bodies: Any) -> None:
     if bodies is not None:
-        raise ArgumentError("bodies", "be left out but for a System", bodies)
+        raise ArgumentError("bodies", "be left out unless a System is given", bodies)
 
 
 def _labelled(pressure: Array, time: Array, listeners: Array, attributes: dict[str, Any]) -> xr.DataArray:

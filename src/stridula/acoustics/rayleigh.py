@@ -33,9 +33,9 @@ def baffled_response(
     interval : float
         Time between samples [s].
     kernel : Interpolation
-        How delays are put on the samples.
+        Interpolation of delays between samples.
     shift : float, optional
-        What is added to every delay, in samples.
+        Number of samples added to every delay.
 
     Returns
     -------
@@ -56,7 +56,7 @@ def baffled_response(
 def baffled_pressure(
     surface: Surface, acceleration: Array, interval: float, listeners: Array, air: Air, bandwidth: float
 ) -> Array:
-    """Return the pressure of a surface whose modes move as given.
+    """Return the pressure of a surface for given accelerations of its modes.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def baffled_pressure(
     air : Air
         The air.
     bandwidth : float
-        Frequency [Hz] up to which it is right, below half the sample rate.
+        Frequency [Hz] up to which it is accurate, below half the sample rate.
 
     Returns
     -------

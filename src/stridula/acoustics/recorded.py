@@ -1,4 +1,4 @@
-"""What a record says of the forces on a track."""
+"""Forces on a track from a record."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DIVERGED = ("not finite", "contact unsolved", "energy created")
 
 @dataclass(frozen=True)
 class Pressing:
-    """Normal forces on a track and where they press.
+    """Normal forces on a track and their places.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Pressing:
     position : ndarray, shape (contacts, samples)
         Abscissas in the middle of the intervals [m].
     later : float
-        How much later than in the middle of the impulses of their intervals forces act [s].
+        Delay of the forces after the middle of the impulses of their intervals [s].
     """
 
     start: float
@@ -54,7 +54,7 @@ def pressing(run: xr.Dataset, panel: Panel) -> Pressing:
     Raises
     ------
     ValueError
-        If it is no record, has one sample, is not evenly sampled, diverged, holds NaN, or presses beyond the track.
+        If it is not a record, has one sample, is not evenly sampled, diverged, holds NaN, or presses beyond the track.
     """
     start, interval, steps, (force, position) = sampled(run, "normal_force", "contact_position")
     if position.ndim == 3:
@@ -66,19 +66,19 @@ def pressing(run: xr.Dataset, panel: Panel) -> Pressing:
 
 
 def sampled(run: xr.Dataset, *names: str) -> tuple[float, float, int, list[Array]]:
-    """Return when the first sample interval begins, its length [s], the steps in it, and variables of contacts.
+    """Return the begin of the first sample interval, its length [s], the steps in it, and variables of contacts.
 
-    Variables have the shape (contacts, samples), or (contacts, tangents, samples) of those along tangents.
+    Variables have the shape (contacts, samples); those along tangents (contacts, tangents, samples).
 
     Raises
     ------
     ValueError
-        If it is no record, has one sample, is not evenly sampled, diverged or holds NaN.
+        If it is not a record, has one sample, is not evenly sampled, diverged or holds NaN.
     """
     run = record("run", run).transpose("time", ...)
     record("run", run, *names, least=2)
     if run.attrs.get("ended") in DIVERGED:
-        raise ArgumentError("run", "be one that can be believed", run, got=f"one that ended {run.attrs['ended']!r}")
+        raise ArgumentError("run", "be one that did not diverge", run, got=f"one that ended {run.attrs['ended']!r}")
     time = run["time"].values
     interval = float((time[-1] - time[0]) / (time.size - 1))
     if not (interval > 0.0 and np.allclose(np.diff(time), interval, rtol=1e-3, atol=0.0)):
@@ -100,13 +100,13 @@ def _by_contact(signal: xr.DataArray) -> Array:
 
 
 def _check_on_track(position: Array, panel: Panel) -> None:
-    # The tip of a run that left the track stands at most a step beyond its end.
+    # The tip of a run that left the track is at most one step beyond its end.
     slack = 1e-3 * (panel.ends[1] - panel.ends[0])
     low, high = float(position.min()), float(position.max())
     if low < panel.ends[0] - slack or high > panel.ends[1] + slack:
         worst = low if low < panel.ends[0] - slack else high
         raise ArgumentError(
             "track",
-            f"be the one the run presses on, here from {at_least(panel.ends[0])} to {at_most(panel.ends[1])} m",
+            f"include all contact positions, here from {at_least(panel.ends[0])} to {at_most(panel.ends[1])} m",
             got=f"a contact_position of {worst:.6g} m",
         )

@@ -1,7 +1,7 @@
-"""Accelerations of modes from their velocities, where a record has those of all modes of a body.
+"""Accelerations of modes from their recorded velocities, where a record has all modes of a body.
 
-A recorded velocity is a centred difference over two steps, low-passed. One short antisymmetric filter derives it in
-time and makes up for both, up to 5/12 of the sample rate.
+A recorded velocity is a centred difference over two steps, low-passed. One short antisymmetric filter differentiates
+it and compensates for both, up to 5/12 of the sample rate.
 """
 
 from __future__ import annotations
@@ -26,34 +26,34 @@ from .redriven import Moved
 
 VARIABLE = ModalMotion.quantity
 MODES, BODY, FREQUENCY = (f"{VARIABLE}_{word}" for word in ("probe", "body", "frequency"))
-# Samples on each side of which an acceleration is made, and frequencies at which that is fitted.
+# Samples on each side from which an acceleration is computed, and number of frequencies of the fit.
 REACH, FITTED = 32, 400
-# Relative error of frequencies that are the same.
+# Relative difference up to which frequencies are equal.
 SAME = 1e-9
 
 
 class RecordedModes:
-    """Modes of a track whose velocities are in a record.
+    """Modes of a track whose velocities are recorded.
 
     Parameters
     ----------
     run : xarray.Dataset
         The record.
     columns : slice
-        Where they are among those recorded.
+        Their columns among the recorded modes.
 
     Attributes
     ----------
     start, interval : float
-        When the record begins, and its sample interval [s].
+        Time at which the record begins, and its sample interval [s].
     samples : int
         Number of its samples.
     first : float
         Time of the first acceleration [s].
     begins : float or None
-        When the track is first moved [s from the start], None if it is not.
+        Time at which the track first moves [s from the start], None if it does not.
     notes : list of str
-        What is missing, in words.
+        Notes on what is missing.
     """
 
     words = "recorded"
@@ -75,7 +75,7 @@ class RecordedModes:
 
 
 def recorded_modes(run: xr.Dataset, track: Any, name: str | None = None) -> RecordedModes | None:
-    """Return the motion of a track, of a name or of any, if a record has it."""
+    """Return the motion of a track, of the given name or any, if it is recorded."""
     if VARIABLE not in getattr(run, "variables", ()):
         return None
     frequency = track.modes().frequency
@@ -86,7 +86,7 @@ def recorded_modes(run: xr.Dataset, track: Any, name: str | None = None) -> Reco
 
 
 def recorded_motion(run: Any, system: System, bodies: Sequence[Any]) -> Moved | None:
-    """Return how the modes of bodies of a system move if a record has it of all of them."""
+    """Return the motion of the modes of bodies of a system if it is recorded for all of them."""
     if VARIABLE not in getattr(run, "variables", ()):
         return None
     spans, parts, last = {}, [], 0
@@ -125,9 +125,9 @@ def accelerations(velocities: Array, interval: float, steps: int) -> Array:
 
 @lru_cache(maxsize=16)
 def _derivative(steps: int) -> Array:
-    """Return the filter that makes accelerations, times the interval, of velocities, shape (2 REACH + 1,)."""
+    """Return the filter from velocities to accelerations, times the interval, shape (2 REACH + 1,)."""
     turned = 2.0 * np.pi * np.linspace(0.0, UNDONE, FITTED + 1)[1:]
-    # Of the centred difference, then of the low-pass.
+    # Gain of the centred difference, times that of the low-pass.
     recorded = np.sinc(turned / steps / np.pi) * gain(turned / (2.0 * np.pi), steps)
     wanted = turned / recorded
     sines = 2.0 * np.sin(np.outer(turned, np.arange(1, REACH + 1)))
@@ -144,7 +144,7 @@ def _velocities(run: xr.Dataset) -> Array:
 
 
 def _columns(run: xr.Dataset, name: str, frequency: Array) -> slice | None:
-    """Return where all modes of a body are among those recorded, None if they are not."""
+    """Return the columns of all modes of a body among the recorded ones, None if not all are recorded."""
     found = np.flatnonzero(run[BODY].values == name)
     if found.size != frequency.size or not np.allclose(run[FREQUENCY].values[found], frequency, rtol=SAME, atol=0.0):
         return None

@@ -1,12 +1,12 @@
 """Accelerations of the modes of bodies in space, driven again by the forces of a record and by drives.
 
-What `driven` does for a track, in three dimensions: forces act along the normal and both tangents of each contact.
-Pairs of modes of a body that turns are plain oscillators where they move with their waves. Forces are turned into that
-frame and motion out of it, by the angle ``b`` of the waves, with ``J`` a quarter of a turn:
+The counterpart of `driven` in three dimensions: forces act along the normal and both tangents of each contact. Pairs of
+modes of a body that turns are plain oscillators in the frame of their waves. Forces are turned into that frame and
+motion out of it, by the angle ``b`` of the waves, with ``J`` a quarter of a turn:
 
     q'' = R(b) (Q'' + 2 b' J Q' + (b'' J - b'²) Q)
 
-Modes that springs couple are taken together, as the modes that they have with these springs.
+Modes that springs couple are replaced by the modes of the coupled system.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ from ..system import System
 from .driven import FASTEST, LEAD, Modes, respond, steady
 from .recorded import sampled
 
-# Steps of an interval at which drives are looked up.
+# Largest number of steps in an interval at which drives are evaluated.
 MOST_STEPS = 50
 
 
 @dataclass(frozen=True)
 class Moved:
-    """How the modes of a system move.
+    """Motion of the modes of a system.
 
     Attributes
     ----------
     start, interval : float
-        When the record begins, and its sample interval [s].
+        Time at which the record begins, and its sample interval [s].
     samples : int
         Number of its samples.
     first : float
@@ -50,11 +50,11 @@ class Moved:
     left_out : ndarray of bool, shape (modes,)
         Modes too fast for the samples.
     pushed : float or None
-        When the first force acts [s from the start], None if none does.
+        Time at which the first force acts [s from the start], None if none does.
     spans : dict
-        First mode of each body and the one after its last, by the body's name.
+        First mode of each body and the one after its last, by body name.
     is_recorded : bool
-        Whether it is that of the march itself.
+        Whether it is the recorded motion of the march itself.
     """
 
     start: float
@@ -69,14 +69,14 @@ class Moved:
 
     @property
     def words(self) -> str:
-        """Where it is from, in words."""
+        """Origin of the motion, for attributes."""
         return "recorded" if self.is_recorded else "driven again"
 
 
 def redriven(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = None) -> Moved:
-    """Return how the modes of a system move under the forces of a record, at rest before it.
+    """Return the motion of the modes of a system under the forces of a record, at rest before it.
 
-    Those of some bodies only, if these are given, and of all whose modes springs couple to theirs.
+    Only that of `bodies`, if given, and of all bodies whose modes springs couple to theirs.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def redriven(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = Non
         rows, signals = np.concatenate([rows, np.eye(len(own))[driven]]), np.concatenate([signals, own[driven]])
     loads = _of_drives(flat, start, interval, min(steps, MOST_STEPS), samples)
     if system.initial_equilibrium is not None:
-        # It has stood so for long.
+        # It has been in equilibrium before.
         signals, loads = signals - signals[:, :1], loads - loads[:, :1]
     forces = rows.T @ steady(signals, steps)
     if len(loads):
@@ -142,7 +142,7 @@ def _only(flat: Assembly, names: Sequence[str]) -> Assembly:
 
 
 def _in_order(points: xr.Dataset, system: System) -> xr.Dataset:
-    """Return a record with its contacts in the order of the system, as it is where they have other names."""
+    """Return a record with its contacts in the order of the system, unchanged if they have other names."""
     names = list(system.contact_names)
     shown = points["contact"].values.tolist() if "contact" in points.dims else names
     return points if shown == names or sorted(shown) != sorted(names) else points.sel(contact=names)
@@ -151,7 +151,7 @@ def _in_order(points: xr.Dataset, system: System) -> xr.Dataset:
 def _places(run: xr.Dataset, system: System) -> Array:
     """Return abscissas of the contacts of a system in the middle of each interval [m], shape (contacts, samples).
 
-    They are zero of the points of surfaces.
+    They are zero for the points of surfaces.
     """
     run = _in_order(run, system)
     *_, (places,) = sampled(run, "contact_position")
@@ -190,7 +190,7 @@ def _of_contacts(flat: Assembly, normal: Array, tangential: Array) -> tuple[Arra
 
 
 def _gone_round(flat: Assembly, rows: Array, signals: Array, places: Array) -> tuple[Array, Array]:
-    """Return rows and forces where contacts on circles push each pair of modes by itself, as it is where they are.
+    """Return rows and forces with contacts on circles acting on each pair of modes by its phase at their places.
 
     `places` are their abscissas in the middle of each interval [m], shape (contacts, samples).
     """
@@ -228,7 +228,7 @@ def _on_paths(flat: Assembly, system: System, places: Array, normal: Array, tang
 
 
 def _moved(flat: Assembly, forces: Array, times: Array, interval: float) -> tuple[Array, Array]:
-    """Return the accelerations of all modes, and which are too fast."""
+    """Return the accelerations of all modes, and a mask of those too fast for the samples."""
     found, coupled = np.zeros_like(forces), flat.coupled
     left_out = ~flat.massless & (flat.angular_frequency * interval >= FASTEST)
     plain = ~flat.massless & ~left_out

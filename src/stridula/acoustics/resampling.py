@@ -1,4 +1,4 @@
-"""From the record's samples to those of a sound, with nothing above the bandwidth."""
+"""Resampling from the rate of a record to that of a sound, with nothing above the bandwidth."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from ..arrays import Array
 from ..checks import ArgumentError, at_least, at_most, positive
 from .sample_rates import low_pass
 
-# Share of the lower of both sample rates up to which sound is kept whole.
+# Fraction of the lower sample rate up to which sound is complete.
 BANDWIDTH = 5.0 / 12.0
 LOWEST = 1000.0
-# What is left of frequencies above half the lower sample rate [dB].
+# Attenuation of frequencies above half the lower sample rate [dB].
 ATTENUATION = 80.0
 # Largest numerator and denominator of the ratio of sample rates, largest drift over a signal in samples.
 LARGEST = 4000
@@ -27,7 +27,7 @@ def ratio_of(sample_rate: float | None, recorded: float, samples: int) -> Fracti
     Raises
     ------
     ValueError
-        If the record does not support it, if it is below 1000 Hz, or if it is in no ratio of whole numbers up to 4000.
+        If it exceeds that of the record, is below 1000 Hz, or is not in a ratio of whole numbers up to 4000.
     """
     if sample_rate is None:
         return Fraction(1)
@@ -40,20 +40,22 @@ def ratio_of(sample_rate: float | None, recorded: float, samples: int) -> Fracti
     found = Fraction(wanted / recorded).limit_denominator(LARGEST)
     if found == 0 or abs(float(found) * recorded / wanted - 1.0) * samples > DRIFT:
         raise ArgumentError(
-            "sample_rate", f"be to the record's {recorded:.8g} Hz as whole numbers up to {LARGEST}", sample_rate
+            "sample_rate",
+            f"be in a ratio of whole numbers up to {LARGEST} to the record's {recorded:.8g} Hz",
+            sample_rate,
         )
     return found
 
 
 def bandwidth_of(ratio: Fraction, recorded: float) -> float:
-    """Return the frequency [Hz] up to which sound is kept whole."""
+    """Return the frequency [Hz] up to which sound is complete."""
     return BANDWIDTH * recorded * min(1.0, float(ratio))
 
 
 def resample(signals: Array, ratio: Fraction) -> Array:
     """Return signals at `ratio` times their sample rate, without delay, low-passed.
 
-    A sinc under a Kaiser window: flat to 0.01 % up to 5/12 of the lower rate, 80 dB down from half of it on.
+    A Kaiser-windowed sinc: flat to 0.01 % up to 5/12 of the lower rate, 80 dB down above half of it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How much sound a mode sends out, and what that takes from its motion."""
+"""Radiation efficiency of modes, and the damping that results from it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .panels import Panel, panel_of
 
 # Gauss-Legendre points in a piece of a side, over which the phase turns by 2 pi at most.
 POINTS = 10
-# Wavelengths along times wavelengths across, beyond which the integral takes minutes, and is 1 in any case.
+# Wavelengths along times wavelengths across, above which the integral takes minutes and the efficiency is 1 anyway.
 MOST_WAVES = 40_000
 
 
@@ -60,12 +60,12 @@ def radiation_efficiency(track: ModalBeam | ModalPlate, frequency: float | Array
 
 
 def radiation_damping(track: ModalBeam | ModalPlate, air: Air | None = None) -> Array:
-    """Return the damping ratios that the sound of one face takes from the modes of a track in a baffle.
+    """Return the damping ratios due to the sound of one face of the modes of a track in a baffle.
 
     ``zeta = rho c sigma N / 2 w`` with the efficiency sigma at the natural frequency and the integral N of the square
-    of the mass-normalised shape: the power sent out, over a period, against the energy. Light fluid: modes and
-    frequencies stay as they are; what the air does between modes and its mass are neglected. It is no part of `radiate`
-    nor of a run: add it to the damping of the body (twice, if both faces send).
+    of the mass-normalised shape: the power radiated in a period over the energy. Light fluid: modes and frequencies
+    are unchanged; coupling of modes by the air and the mass of the air are neglected. Neither `radiate` nor a run
+    includes it: add it to the damping of the body (twice, if both faces radiate).
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def radiation_damping(track: ModalBeam | ModalPlate, air: Air | None = None) -> 
     Returns
     -------
     ndarray, shape (modes,)
-        Damping ratios [1] of all modes of the track in its order, zero for those that do not bend it.
+        Damping ratios [1] of all modes of the track in its order, zero for those without bending.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def mean_square(panel: Panel) -> Array:
 
 
 def _efficiency(panel: Panel, wavenumber: float) -> float:
-    """Return the efficiency of the one mode of a panel."""
+    """Return the efficiency of the only mode of a panel."""
     (along, across), square = panel.wavenumbers[0], mean_square(panel)[0] / panel.amplitude**2
     u, du = _quadrature(panel.length, along + wavenumber)
     v, dv = _quadrature(panel.width, across + wavenumber)

@@ -1,4 +1,4 @@
-"""What a track sends to a listener in each way in which it is heard: an impulse response for each of its modes."""
+"""Impulse responses from the modes of a track to listeners, in a baffle or in free air."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ from .surfaces import surface_of
 
 
 class Way(Protocol):
-    """How a track is heard.
+    """Radiation of a track: flush with a baffle, or in free air.
 
     Attributes
     ----------
     most : float
-        Up to where its sound is whole at most [Hz].
+        Largest bandwidth of its sound [Hz].
     in_a_wall : bool
-        Whether it is flush with a rigid endless wall.
+        Whether it is flush with a rigid infinite wall.
     nearest : float
-        Distance below which nobody listens [m].
+        Smallest distance of a listener [m].
     """
 
     most: ClassVar[float]
@@ -46,19 +46,19 @@ class Way(Protocol):
         """Its surface and the modes that bend it."""
 
     def check(self, listeners: Array) -> None:
-        """Raise ValueError if a listener is where it cannot be heard."""
+        """Raise ValueError if a listener is at a place without sound, inside a body or behind the baffle."""
 
     def heard(self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
-        """Return what modes, by their numbers in the panel, send to every listener, `shift` samples later."""
+        """Return the sound of modes, by number in the panel, at every listener, `shift` samples later."""
 
 
 def way_of(track: Any, baffled: bool, name: str = "") -> Way:
-    """Return how a track is heard: in a baffle, or in free air, a plate as a thin one and a beam as a slim one.
+    """Return how a track radiates: in a baffle, or in free air as a thin plate or a slim beam.
 
     Raises
     ------
     ValueError
-        If it cannot be heard so.
+        If the track cannot radiate in this way.
     """
     if baffled:
         return Baffled(panel_of(track))
@@ -66,7 +66,7 @@ def way_of(track: Any, baffled: bool, name: str = "") -> Way:
 
 
 class Baffled:
-    """A track that is flush with a rigid endless wall."""
+    """A track that is flush with a rigid infinite wall."""
 
     most: ClassVar[float] = np.inf
     in_a_wall: ClassVar[bool] = True
@@ -80,7 +80,7 @@ class Baffled:
         check_in_front(listeners)
 
     def heard(self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
-        """Return what is sent to every listener."""
+        """Return the responses at every listener."""
         panel, kernel = self.panel.only(modes), interpolation(bandwidth * interval)
         surfaces = [surface_of(panel, listener, 2.0 * np.pi * bandwidth / air.speed) for listener in listeners]
         responses = [
@@ -105,7 +105,7 @@ class SlimLine:
         check_off_beam(listeners, self.beam.length, self.nearest)
 
     def heard(self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
-        """Return what is sent to every listener, and up to where it holds."""
+        """Return the responses at every listener, with a note on the frequency up to which they are valid."""
         panel, kernel = self.panel.only(modes), interpolation(bandwidth * interval)
         responses = [dipole_response(panel, self.area, one, air, interval, kernel, shift) for one in listeners]
         note = f"a line of dipoles: the beam is slim below {slim_below(self.beam, air):.4g} Hz"
@@ -127,20 +127,20 @@ class Thin:
         check_off_panel(self.panel.distances(listeners), self.nearest, listeners)
 
     def heard(self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
-        """Return what is sent to every listener, and up to where the sheet has points enough."""
+        """Return the responses at every listener, with a note if the sheet has too few points for the bandwidth."""
         sheet, distances = _sheet(self.plate), self.panel.distances(listeners)
         numbers = np.arange(len(sheet.parities))
         frequency = self.panel.angular_frequency[numbers] / (2.0 * np.pi)
         sent = by_fits(self.name, sheet, numbers, frequency, listeners, distances, air, interval, shift, bandwidth)
         if sheet.frequency < min(bandwidth, WHOLE_BEYOND * float(frequency.max())):
-            note = f"{self.name}: a sheet of points enough for sound up to {sheet.frequency:.4g} Hz only"
+            note = f"{self.name}: a sheet with points enough for sound up to {sheet.frequency:.4g} Hz only"
             sent = replace(sent, notes=[*sent.notes, note])
         return sent.only(modes)
 
 
 @lru_cache(maxsize=8)
 def _sheet(plate: ModalPlate) -> Sheet:
-    """Return a plate as a sheet; the same one each time, as fits are kept by it."""
+    """Return a plate as a sheet; the same object each time, as fits are cached by it."""
     panel = panel_of(plate)
     frequency = panel.angular_frequency / (2.0 * np.pi)
     low = panel.only(frequency <= max(FINE_ENOUGH, float(frequency[0])))

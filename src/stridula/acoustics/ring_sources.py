@@ -1,12 +1,12 @@
 """Bodies of revolution as rings of sources: a small fit for each number of waves round the axis.
 
-A ring of radius r' at z', its strength going round as ``cos n theta``, has the field ``cos n theta g_n(r, z)``,
+A ring of radius r' at z' with a strength of ``cos n theta`` has the field ``cos n theta g_n(r, z)``,
 
     g_n = 1 / (8 pi²) integral of cos(n t) exp(-i k R) / R dt, R² = r² + r'² - 2 r r' cos t + (z - z')².
 
-Close to a ring the integrand of its derivative is sharp. It is split: ``(1 + i k R) exp(-i k R)`` less
-``1 + k² R² / 2`` leaves a smooth rest, and what was taken off depends on the frequency by ``k²`` alone, so that it is
-integrated once with as many angles as that takes.
+Close to a ring the integrand of its derivative has a sharp peak. It is split: ``(1 + i k R) exp(-i k R)`` less
+``1 + k² R² / 2`` is smooth, and the part subtracted depends on the frequency through ``k²`` alone, so that it is
+integrated once, with as many angles as it needs.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from ..arrays import Array
 from ..bodies.body_surfaces import RingSurface, inscribed_radius
 from .equivalent_sources import Fit, depths, fitted
 
-# Angles round a ring: for a wave of its sharpest part, and for each radian of the waves of sound, beyond the order.
+# Angles round a ring: for the width of the sharp part, for each radian of the waves of sound, and beyond the order.
 SHARPEST, SMOOTH, MORE = 12.0, 1.4, 40
-# Gauss' points in each part of half a turn, beyond the order.
+# Gauss points in each part of half a turn, beyond the order.
 GAUSS = 10
-# Numbers held at once: those that a processor's own memory holds are the fastest.
+# Numbers held at once, few enough for the cache of a processor.
 AT_ONCE = 30_000
 
 
@@ -61,7 +61,7 @@ class RingSources:
 
     @cached_property
     def orders(self) -> Array:
-        """The numbers of waves round the axis that modes have."""
+        """Numbers of waves of the modes round the axis."""
         return np.unique(self.surface.orders)
 
     def fit(self, wavenumber: float) -> Fit:
@@ -71,7 +71,7 @@ class RingSources:
         for slope, order in zip(self._slopes(wavenumber), self.orders, strict=True):
             those = surface.orders == order
             strengths, errors[those] = fitted(slope, -surface.shapes[:, those], areas, surface.widths)
-            # Close to the surface, too, pressures keep 1e-5.
+            # Pressures stay accurate to 1e-5 even close to the surface.
             found.append(strengths.astype(np.complex64))
         return Fit(tuple(found), errors)
 
@@ -97,7 +97,7 @@ class RingSources:
         angles, weights = _half_turn(int(SMOOTH * reach) + int(self.orders.max()) + MORE)
         cosines = _cosines(self.orders, angles, weights).astype(np.float32)
         for rings in self._few(angles.size):
-            # What is smooth is added to what is sharp: of that, single precision loses 1e-7.
+            # Single precision loses 1e-7 of the smooth part, which is added to the sharp one.
             away, slope = self._distances(rings, angles, np.float32)
             scale = slope / (away * away)
             phase = np.float32(wavenumber) * away
@@ -109,7 +109,7 @@ class RingSources:
 
     @cached_property
     def _sharp(self) -> tuple[Array, Array]:
-        """What is left at the wavenumber 0 of the derivatives, and what grows as its square."""
+        """Parts of the derivatives that are constant and that grow with the square of the wavenumber."""
         shape = (len(self.orders), len(self.surface.places), len(self.sources))
         still, bent = np.empty(shape), np.empty(shape)
         apart = np.linalg.norm(self.surface.places[:, None] - self.sources[None], axis=2)
@@ -137,7 +137,7 @@ class RingSources:
         radius, up = self.sources[:, 0], z - self.sources[:, 1]
         square, around = (r - radius) ** 2 + up**2, 2.0 * r * radius
         level, turned = across * (r - radius) + along * up, across * radius
-        # No differences of what is alike are left.
+        # No differences of nearly equal numbers remain.
         square, around, level, turned = (part[..., None].astype(precision) for part in (square, around, level, turned))
         off = (2.0 * np.sin(0.5 * angles) ** 2).astype(precision)
         away = np.sqrt(square + around * off)
@@ -169,7 +169,7 @@ def _half_turn(count: int) -> tuple[Array, Array]:
 def _towards_zero(nearest: float, order: int) -> tuple[Array, Array]:
     """Return angles from 0 to pi, closer together towards 0, and their weights in a mean over the turn.
 
-    Gauss' points in parts that are each as long as all before them, the first as long as what is nearest is far.
+    Gauss points in parts each as long as all before it together, the first as long as the smallest distance.
     """
     halvings = max(1, int(np.ceil(np.log2(np.pi / min(nearest, 1.0)))))
     ends = np.append(0.0, np.pi * 0.5 ** np.arange(halvings, -1.0, -1.0))
@@ -179,5 +179,5 @@ def _towards_zero(nearest: float, order: int) -> tuple[Array, Array]:
 
 
 def _cosines(orders: Array, angles: Array, weights: Array) -> Array:
-    """Return what takes values at angles, with weights in a mean, to harmonics over ``4 pi``: (angles, orders)."""
+    """Return the matrix from values at angles, with weights in a mean, to harmonics over ``4 pi``: (angles, orders)."""
     return np.asarray(weights[:, None] * np.cos(np.outer(angles, orders)) / (4.0 * np.pi))

@@ -9,10 +9,10 @@ from scipy.signal import firwin, kaiserord, resample_poly
 
 from ..arrays import Array
 
-# Attenuation from half of the lower rate on [dB], and how far below that the pass band ends: 20 kHz at 44.1 kHz.
+# Attenuation above half of the lower rate [dB], and end of the pass band over that half: 20 kHz at 44.1 kHz.
 STOP_BAND = 110.0
 PASS_BAND = 0.907
-# Rates that are not in a ratio of such numbers are off by one part in 1e7, by some in 1e6 where they are far apart.
+# Rates without a ratio of such numbers are off by one part in 1e7, by some in 1e6 where they are far apart.
 LARGEST_DENOMINATOR = 5000
 
 
@@ -22,10 +22,10 @@ def ratio(rate: float, wanted: float) -> Fraction:
 
 
 def resampled(values: Array, rate: float, wanted: float) -> Array:
-    """Return signals at another sample rate; before their first sample and after their last there is silence.
+    """Return signals at another sample rate, with silence before their first sample and after their last.
 
-    A Kaiser-windowed sinc: flat within 0.0001 dB up to 0.907 of half of the lower rate, 110 dB down from that half on.
-    Nothing that is heard is folded back, and no image is left.
+    A Kaiser-windowed sinc: flat within 0.0001 dB up to 0.907 of half of the lower rate, 110 dB down above that half.
+    There is no audible aliasing and no image.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def resampled(values: Array, rate: float, wanted: float) -> Array:
     Returns
     -------
     ndarray, shape (other samples, signals)
-        The first sample is at the time of the first one.
+        Signals whose first sample is at the same time.
     """
     by = ratio(rate, wanted)
     if by == 1:
@@ -53,11 +53,11 @@ def low_pass(by: Fraction, pass_band: float = PASS_BAND, stop_band: float = STOP
     by : Fraction
         New over old sample rate.
     pass_band : float, optional
-        Share of half of the lower rate up to which it is flat [1].
+        Fraction of half of the lower rate up to which it is flat [1].
     stop_band : float, optional
-        Attenuation from that half on [dB].
+        Attenuation above that half [dB].
     """
-    # In units of half of the rate at which it works.
+    # In units of half the rate of the filter.
     stop = 1.0 / max(by.numerator, by.denominator)
     size, beta = kaiserord(stop_band, (1.0 - pass_band) * stop)
     return np.asarray(firwin(size | 1, 0.5 * (1.0 + pass_band) * stop, window=("kaiser", beta)))

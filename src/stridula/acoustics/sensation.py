@@ -1,4 +1,4 @@
-"""What a sound feels like: loudness, sharpness, roughness, computed by MoSQITo (imported here and nowhere else)."""
+"""Psychoacoustics: loudness, sharpness, roughness, computed by MoSQITo (imported only here)."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from .sample_rates import resampled
 
 RATE = 48000
 FIELDS = ("free", "diffuse")
-# What sounds must last [s]: for the filters of the lowest bands to settle, for the temporal weighting, for one frame.
+# Shortest sounds [s]: for the filters of the lowest bands to settle, for the temporal weighting, for one frame.
 SHORTEST_STEADY, SHORTEST_VARYING, FRAME = 0.5, 0.25, 0.2
-# Lowest rate [Hz] of sounds in which no band of the models is left empty: their highest ends at 14.1 kHz.
+# Lowest sample rate [Hz] that leaves no band of the models empty: their highest ends at 14.1 kHz.
 LOWEST_RATE = 28.3e3
-# Loudness [sone] below which sharpness says nothing.
+# Loudness [sone] below which sharpness has no meaning.
 FAINTEST = 0.1
 
 
@@ -35,9 +35,9 @@ def is_available() -> bool:
 def loudness(pressure: xr.DataArray, field: str = "free") -> xr.DataArray:
     """Return the loudness of a steady sound (ISO 532-1:2017, method for stationary sounds).
 
-    The bands are filtered from silence, so that a sound that starts at once is a little louder than one that goes on:
+    The bands are filtered from silence, so that a sound that starts abruptly is a little louder than a lasting one:
     2 s of 1 kHz at 40, 60 and 80 dB have 1.006, 4.067 and 16.84 sone, 0.5 s have 1.005, 4.14 and 17.5, where the
-    definition has 1, 4 and 16. For sounds that come and go take `loudness_over_time`.
+    definition has 1, 4 and 16. For intermittent sounds use `loudness_over_time`.
 
     Parameters
     ----------
@@ -68,8 +68,8 @@ def loudness(pressure: xr.DataArray, field: str = "free") -> xr.DataArray:
 def loudness_over_time(pressure: xr.DataArray, field: str = "free") -> xr.DataArray:
     """Return the loudness of a sound that varies (ISO 532-1:2017, method for time-varying sounds).
 
-    Its largest value is Nmax; N5, exceeded in 5 % of the time, is what listeners take for the loudness of the whole:
-    ``loudness_over_time(pressure).quantile(0.95, "time")``. It rises from silence in some 0.1 s.
+    Its largest value is Nmax; N5, exceeded in 5 % of the time, corresponds to the perceived loudness of the whole
+    sound: ``loudness_over_time(pressure).quantile(0.95, "time")``. It rises from silence in about 0.1 s.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def sharpness(pressure: xr.DataArray, field: str = "free") -> xr.DataArray:
     Returns
     -------
     xarray.DataArray, shape () or (listener,)
-        Sharpness [acum]; NaN for what is fainter than 0.1 sone.
+        Sharpness [acum]; NaN for sounds below 0.1 sone.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def sharpness(pressure: xr.DataArray, field: str = "free") -> xr.DataArray:
 def roughness(pressure: xr.DataArray) -> xr.DataArray:
     """Return the roughness of a sound over time (Daniel & Weber 1997, Acustica 83, 113-123).
 
-    A tone of 1 kHz at 60 dB, fully modulated at 70 Hz, defines 1 asper; it comes to 1.019.
+    A tone of 1 kHz at 60 dB, fully modulated at 70 Hz, defines 1 asper; the result here is 1.019.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def _each(sounds: Array, of_one: Callable[[Array], Any]) -> list[Any]:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep to ourselves what NumPy warns of inside, such as the logarithm of silence."""
+    """Suppress warnings of NumPy inside, such as that of the logarithm of silence."""
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         yield

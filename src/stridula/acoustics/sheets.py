@@ -1,18 +1,20 @@
 """Thin flat bodies in open air as sheets of dipoles.
 
-The pressures in front of a thin plate and behind it differ by mu(y), and both sides move alike. All over the plate,
+The pressures in front of a thin plate and behind it differ by mu(y), and both sides have the same motion. The pressure
+is an integral over the plate,
 
     p(x) = integral of mu dG/dn dS, G = exp(-i k R) / (4 pi R),
 
-and with the acceleration a along the normal n, dp/dn = -rho a is an equation for mu, the finite part of
+With the acceleration a of the plate along the normal n, dp/dn = -rho a on the plate is an equation for mu, the finite
+part of
 
     integral of mu (1 + i k R) exp(-i k R) / (4 pi R³) dS = -rho a.
 
-Strengths are constant on patches between Chebyshev's points of each side, equations stand at the points between these:
-Multhopp's rule of wings (Lan 1974, J. Aircraft 11, 518-527), which knows how mu falls to zero at edges. ``1 / R³`` and
-``k² / 2 R`` of the kernel are integrated in closed form over the patches; the rest is smooth. A rectangle is its own
-image in both of its middle lines: modes that are even or odd in each need a quarter of the points.
-"""
+Strengths are constant on patches between the Chebyshev points of each side, and the equations hold at the points
+between these: Multhopp's rule for wings (Lan 1974, J. Aircraft 11, 518-527), which includes the decrease of mu to zero
+at edges. The parts ``1 / R³`` and ``k² / 2 R`` of the kernel are integrated in closed form over the patches; the rest
+is smooth. A rectangle is symmetric about both of its middle lines: modes that are even or odd about each need only a
+quarter of the points."""
 
 from __future__ import annotations
 
@@ -28,22 +30,22 @@ from ..bodies.body_surfaces import SOUND
 from .equivalent_sources import Fit
 from .panels import Panel
 
-# Points along a side for each wave of sound or of the modes, and more for the edges; the most of all.
+# Points along a side for each wave of sound or of the modes, additional points for the edges, and largest total number.
 POINTS_A_WAVE, FOR_EDGES, MOST = 3.0, 12, 2400
-# Images of a point in both middle lines, and the signs that even and odd modes have there.
+# Images of a point in both middle lines; 1 where it is mirrored.
 IMAGES = ((0, 0), (1, 0), (0, 1), (1, 1))
 
 
 @dataclass(frozen=True, eq=False)
 class Sheet:
-    """A rectangle that moves out of its plane, from x = 0 and y = `edge`.
+    """A rectangle that moves out of its plane, with a corner at x = 0 and y = `edge`.
 
     Attributes
     ----------
     length, width, edge : float
-        Sides along x and y, and where it begins along y [m].
+        Sides along x and y, and smallest y [m].
     counts : tuple of int
-        Numbers of cuts along x and along y, odd; the points are between them.
+        Numbers of cuts along x and along y, odd; the points lie between them.
     shapes : ndarray, shape (quarter of the points, modes)
         Motion of the modes at the points next to the corner [kg^(-1/2)].
     parities : ndarray of int, shape (modes, 2)
@@ -66,7 +68,7 @@ class Sheet:
 
     @property
     def frequency(self) -> float:
-        """Up to where it has points enough for the sound [Hz]."""
+        """Frequency up to which its points are enough for the sound [Hz]."""
         sides = zip((self.length, self.width), self.counts, strict=True)
         return min(SOUND * (count - FOR_EDGES) / (POINTS_A_WAVE * 0.5 * pi * side) for side, count in sides)
 
@@ -77,7 +79,7 @@ def sheet_of(panel: Panel, frequency: float) -> Sheet:
         np.array([panel.length, panel.width]),
         np.maximum(panel.wavenumbers.max(axis=0), 2.0 * pi * frequency / SOUND),
     )
-    # In the middle points are farther apart than on average by pi / 2.
+    # In the middle, the distance of points is pi / 2 times its mean.
     wanted = POINTS_A_WAVE * sides * waves / 4.0 + FOR_EDGES
     wanted *= min(1.0, sqrt(MOST / float(wanted.prod())))
     counts = tuple(2 * ceil(0.5 * (float(one) - 1.0)) + 1 for one in wanted)
@@ -107,13 +109,13 @@ class SheetDipoles:
         return float(np.hypot(self.surface.length, self.surface.width))
 
     def fit(self, wavenumber: float) -> Fit:
-        """Return the differences of pressure at a wavenumber of the sound [rad/m], of a quarter of the points.
+        """Return the differences of pressure at a quarter of the points, for a wavenumber of the sound [rad/m].
 
-        The equations are met: errors are not known.
+        The equations hold exactly, so errors are nan.
         """
         away, still, bent = self._pairs
         phase = wavenumber * away
-        # Of (1 + i k R) exp(-i k R), less 1 + k² R² / 2; at R = 0 it is -i k³ R³ / 3.
+        # (1 + i k R) exp(-i k R) less 1 + k² R² / 2, near R = 0 equal to -i k³ R³ / 3.
         rest = (1.0 + 1j * phase) * np.exp(-1j * phase) - 1.0 - 0.5 * phase**2
         with np.errstate(invalid="ignore", divide="ignore"):
             rest = np.where(away > 0.0, rest / away**3, -1j * wavenumber**3 / 3.0)
@@ -165,9 +167,9 @@ class SheetDipoles:
 
     @cached_property
     def _pairs(self) -> tuple[Array, Array, Array]:
-        """Distances of the points of a quarter from the images [m], integrals of ``1 / R³`` and ``1 / R`` over these.
+        """Distances of the points of a quarter from the images [m], and integrals over the patches of the images.
 
-        Shape (4, quarter, quarter) each.
+        The integrals are those of ``1 / R³`` and ``1 / R``; shape (4, quarter, quarter) each.
         """
         x, y = self._images[0]
         away = np.array([np.hypot(x[:, None] - one, y[:, None] - other) for one, other in self._images])
@@ -180,7 +182,7 @@ class SheetDipoles:
 
 
 def _cuts(count: int, side: float) -> Array:
-    """Return Chebyshev's points of a side, between which patches are [m]."""
+    """Return the Chebyshev points of a side, which separate patches [m]."""
     return np.asarray(0.5 * side * (1.0 - np.cos((np.arange(count) + 0.5) * pi / count)))
 
 
@@ -195,7 +197,7 @@ def _signs(parities: Array) -> Array:
 
 
 def _over_patches(corners: Array) -> Array:
-    """Return integrals over patches from their primitive at the cuts, the last two axes."""
+    """Return integrals over patches from their primitive at the cuts, along the last two axes."""
     return np.asarray(np.diff(np.diff(corners, axis=-1), axis=-2))
 
 

@@ -16,7 +16,7 @@ from .listeners import check_off_beam
 
 @dataclass(frozen=True)
 class SlimBeam:
-    """A beam as far as it sounds: what `dipole_response` asks of a line of it, and where it is.
+    """A beam as a line of dipoles, with the properties that `dipole_response` needs, and its place.
 
     Attributes
     ----------
@@ -29,9 +29,10 @@ class SlimBeam:
     wavenumbers : ndarray, shape (modes, 2)
         Wavenumbers of bending at their frequencies, along it and across [rad/m].
     frame : ndarray, shape (3, 3)
-        Directions along it, square to it and its bending, and across it as it bends, in the axes of places.
+        Directions along it, perpendicular to it and to its bending, and across it along its bending, in the axes of
+        places.
     origin : ndarray, shape (3,)
-        Where its abscissa 0 is in these axes [m].
+        Place of its abscissa 0 in these axes [m].
     """
 
     width: ClassVar[float] = 0.0
@@ -49,13 +50,13 @@ class SlimBeam:
         return float(self.body.length)
 
     def shapes(self, x: Array, y: Array) -> Array:
-        """Return by how much the modes move places x along it across itself, shape (places, modes) [kg^(-1/2)]."""
+        """Return the transverse mode shapes at abscissas x, shape (places, modes) [kg^(-1/2)]."""
         across = self.body.axes[1]
         rows = [across @ self.body.trace(float(place), self.held) for place in x]
         return np.array(rows)[:, self.numbers]
 
     def only(self, modes: Array) -> SlimBeam:
-        """Return it with some of its modes, by their numbers among those heard."""
+        """Return it with some of its modes, by their indices in `numbers`."""
         return replace(self, numbers=self.numbers[modes], wavenumbers=self.wavenumbers[modes])
 
     def beside(self, places: Array) -> Array:
@@ -83,7 +84,7 @@ class SlimBeam:
 
 
 def slim_beam(body: Any, held: bool, numbers: Array, frame: Array, origin: Array) -> SlimBeam:
-    """Return a beam of which some modes are heard, where it is; arguments are the attributes of a `SlimBeam`."""
+    """Return a beam with the modes that are heard, at its place; arguments are attributes of a `SlimBeam`."""
     section, material = body.section, body.material
     stiff = (material.density * section.area / (material.young * section.second_moment)) ** 0.25
     along = np.sqrt(body.modes(held).angular_frequency[numbers]) * stiff

@@ -1,4 +1,4 @@
-"""How bodies in space sound: by their closed surface in open air, as lines of dipoles, or flat in a baffle."""
+"""Sound of bodies in space: by their closed surface in open air, as lines of dipoles, or as flat bodies."""
 
 from __future__ import annotations
 
@@ -19,36 +19,36 @@ from .panels import is_flat
 from .responses import Way, slim_below, way_of
 from .slim_beams import SlimBeam, slim_beam
 
-# How far a beam must be slim to be a line of dipoles, over the frequency of its highest mode.
+# Frequency up to which a beam must be slim to be a line of dipoles, over that of its highest mode.
 BEYOND = 1.2
-# Distance of parallel flat bodies, over which they are not in one baffle [m], and cosine of their angle.
+# Largest distance of parallel flat bodies in one baffle [m], and smallest cosine of the angle between their normals.
 LEVEL, PARALLEL = 1e-9, 1.0 - 1e-12
 
 
 @dataclass(frozen=True)
 class Wall:
-    """A rigid endless wall.
+    """A rigid infinite wall.
 
     Attributes
     ----------
     origin, normal : ndarray, shape (3,)
-        One of its points [m], and its normal to the side of the listeners.
+        One of its points [m], and its normal towards the listeners.
     """
 
     origin: Array
     normal: Array
 
     def heights(self, places: Array) -> Array:
-        """Return how far places are in front of it [m]."""
+        """Return the distances of places in front of it [m], negative behind it."""
         return np.asarray((places - self.origin) @ self.normal)
 
     def images(self, places: Array) -> Array:
-        """Return where places are seen in it [m]."""
+        """Return the mirror images of places in it [m]."""
         return np.asarray(places - 2.0 * np.outer(self.heights(places), self.normal))
 
 
 class Sounding(Protocol):
-    """A body in space as it sounds."""
+    """A body in space as a source of sound."""
 
     @property
     def name(self) -> str:
@@ -56,7 +56,7 @@ class Sounding(Protocol):
 
     @property
     def most(self) -> float:
-        """Up to where its sound is whole at most [Hz]."""
+        """Largest bandwidth of its sound [Hz]."""
 
     @property
     def points(self) -> Array:
@@ -64,13 +64,13 @@ class Sounding(Protocol):
 
     @property
     def wall(self) -> Wall | None:
-        """The baffle that it is flush with, None in open air."""
+        """The baffle with which it is flush, None in open air."""
 
     def distances(self, places: Array) -> Array:
-        """Return the distances of places to it [m]; raise ValueError where it cannot be heard."""
+        """Return the distances of places to it [m]; raise ValueError for places inside it or behind the baffle."""
 
     def heard(self, moving: Array, places: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
-        """Return what it sends to places; `moving` are the numbers of the modes that move."""
+        """Return its sound at places; `moving` are the numbers of the modes that move."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Slim:
         return self.beam.distances(places)
 
     def heard(self, moving: Array, places: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
-        """Return what the modes that move send."""
+        """Return the sound of the modes that move."""
         beam = self.beam.only(np.flatnonzero(np.isin(self.beam.numbers, moving)))
         if not beam.numbers.size:
             return Heard(beam.numbers, [])
@@ -118,11 +118,11 @@ class Flat:
     name : str
         Name of the body.
     way : Way
-        How it is heard.
+        How it radiates.
     frame : ndarray, shape (3, 3)
-        World components of its own x, y and z.
+        World components of its x, y and z axes.
     corner : ndarray, shape (3,)
-        Where x, y and z are zero in the world [m].
+        Place in the world where its x, y and z are zero [m].
     """
 
     name: str
@@ -132,7 +132,7 @@ class Flat:
 
     @property
     def most(self) -> float:
-        """Up to where its sound is whole at most [Hz]."""
+        """Largest bandwidth of its sound [Hz]."""
         return self.way.most
 
     @property
@@ -144,7 +144,7 @@ class Flat:
 
     @property
     def wall(self) -> Wall | None:
-        """The wall about it if it is in one."""
+        """The wall around it, None in open air."""
         return Wall(self.corner, self.frame[2]) if self.way.in_a_wall else None
 
     def distances(self, places: Array) -> Array:
@@ -158,12 +158,12 @@ class Flat:
         return found
 
     def heard(self, moving: Array, places: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
-        """Return what the modes that bend it send."""
+        """Return the sound of the modes that bend it."""
         waves = self.way.panel.wavenumbers
         bending = moving[moving < len(waves)]
         if not bending.size:
             return Heard(bending, [])
-        # Modes that share a sine stand together.
+        # Modes with the same sine along x are adjacent.
         bending = bending[np.argsort(waves[bending, 0], kind="stable")]
         return self.way.heard(bending, self._own(places), air, interval, shift, bandwidth)
 
@@ -172,7 +172,7 @@ class Flat:
 
 
 def sounding_of(name: str, body: Any, held: bool, origin: Array, baffled: bool, air: Air) -> Sounding:
-    """Return how a body sounds that has a surface.
+    """Return a body that has a surface as a source of sound.
 
     Parameters
     ----------
@@ -183,7 +183,7 @@ def sounding_of(name: str, body: Any, held: bool, origin: Array, baffled: bool, 
     held : bool
         Whether its root follows an imposed velocity.
     origin : ndarray, shape (3,)
-        Where its own origin is in the world [m].
+        Place of its origin in the world [m].
     baffled : bool
         Whether flat bodies are in a baffle.
     air : Air
@@ -200,7 +200,7 @@ def sounding_of(name: str, body: Any, held: bool, origin: Array, baffled: bool, 
     if is_slim(line, modes, air):
         return Slim(name, line)
     surface = body.surface(held_x=True) if held else body.surface()
-    # Of a beam of finite elements all modes are known, more than a surface can tell apart.
+    # A beam of finite elements may have more modes than its surface resolves.
     return open_surface(name, surface, modes, origin, FINE_ENOUGH)
 
 
@@ -220,7 +220,7 @@ def is_slim(line: SlimBeam, modes: Modes, air: Air) -> bool:
 
 
 def wall_of(heard: Sequence[Sounding]) -> Wall | None:
-    """Return the baffle in which bodies sound, None in open air.
+    """Return the baffle of bodies, None in open air.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Sound pressure of a track while it is being played: the sum of `radiate`, part by part."""
+"""Sound pressure of a track in real time: the sum of `radiate`, part by part."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from .resampling import ATTENUATION, BANDWIDTH, bandwidth_of
 from .responses import Baffled
 from .sample_rates import low_pass
 
-# What a mode sends to the listener, relative to the loudest, that rounding may make.
+# Response of a mode, relative to that of the loudest, that rounding may cause.
 ROUND_OFF = 1e-12
-# Samples by which the first acceleration comes before the middle of the first interval.
+# Samples from the middle of the first interval to the first acceleration.
 EARLY = 0.5 - LEAD
 
 
 class StreamedSound:
-    """The pressure of a baffled track at one listener, from forces that come part by part.
+    """The pressure of a baffled track at one listener, from forces given part by part.
 
-    What `radiate` makes of the same forces, to rounding.
+    Equals the result of `radiate` for the same forces, up to rounding.
 
     Parameters
     ----------
     track : ModalBeam or ModalPlate
-        What is heard.
+        The track.
     listener : tuple of float
-        Where one listens, as in `radiate` [m].
+        Place of the listener, as in `radiate` [m].
     interval : float
         Time between samples [s].
     steps : int
@@ -45,7 +45,7 @@ class StreamedSound:
     Attributes
     ----------
     delay : int
-        Samples by which the sound comes later than it is heard; zero beyond some 0.2 m.
+        Samples by which the sound is late; zero for listeners farther than about 0.2 m.
 
     Raises
     ------
@@ -84,14 +84,14 @@ class StreamedSound:
         self.begin()
 
     def begin(self) -> None:
-        """Let nothing have sounded yet."""
+        """Start from silence."""
         self.memory = [np.zeros(len(taps) - 1) for taps, _ in self.filters]
         self.force, self.position = np.zeros(2 * LEAD), np.zeros(LEAD)
         self.moved = np.zeros((len(self.filters), self.reach))
         self.has_begun = False
 
     def feed(self, force: Array, position: Array) -> Array:
-        """Take the normal forces and the places of the next samples and return the pressure at them.
+        """Return the pressure at the next samples, from the normal forces and their places.
 
         Parameters
         ----------
@@ -119,7 +119,7 @@ class StreamedSound:
         return self._heard(moved)
 
     def _heard(self, moved: Array) -> Array:
-        """Return what the modes send to the listener, by one transform of all that it can still hear of them."""
+        """Return the pressure from the modes, by one transform of all samples that still reach the listener."""
         count, taps = moved.shape[1], self.path.shape[1]
         whole = np.concatenate([self.moved, moved], axis=1)
         self.moved = whole[:, count:]

@@ -4,9 +4,9 @@ Helmholtz's integral over the surface of a body, n outward, with the normal acce
 
     p(x) / 2 = integral of (p dG/dn + rho a G) dS, G = exp(-i k R) / (4 pi R),
 
-is an equation for the pressure p there; beyond the body the same integral is the pressure itself, within it is zero. At
-frequencies at which the inside resonates only this last statement tells the pressure: it is asked for at some points
-within, in least squares (Schenck 1968, J. Acoust. Soc. Am. 44, 41-58).
+is an equation for the pressure p there; outside the body the same integral is the pressure itself, inside it is zero.
+At frequencies at which the inside resonates only this last condition determines the pressure: it is required at some
+points within, in least squares (Schenck 1968, J. Acoust. Soc. Am. 44, 41-58).
 """
 
 from __future__ import annotations
@@ -21,30 +21,30 @@ from ..bodies.body_surfaces import PointSurface, inscribed_radius
 from .equivalent_sources import Fit, least_squares
 from .flat_patches import patch_integrals
 
-# Points of the surface for one within, and the ball around these, over the reach of a patch, that is free of surface.
+# Points of the surface for one within, and distance of the latter from the surface over the reach of a patch.
 POINTS_TO_ONE_WITHIN, FREE = 12, 2.0
-# Distance over the reach of a patch up to which it is no point.
+# Distance over the reach of a patch up to which it is not taken as a point.
 NEAR = 4.0
-# Share of a turn whose multiples fill it evenly.
+# Fraction of a turn whose multiples fill it evenly.
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 
 
 @dataclass(frozen=True)
 class _Static:
-    """What patches give at places at the frequency zero, shape (places, points) each, taken as points.
+    """Integrals over patches at places at zero frequency, shape (places, points) each, taken as points.
 
     Attributes
     ----------
     away : ndarray
-        Distances [m]; zero of a patch from itself.
+        Distances [m]; zero from a patch to itself.
     double, single : ndarray
-        Integrals over the patches of -dG/dn and of G, of a patch at its own place in truth.
+        Integrals over the patches of -dG/dn and of G, exact for a patch at its own place.
     near : tuple of ndarray, shape (pairs,)
         Numbers of places and of patches near to each other.
     more_double, more_single : ndarray, shape (pairs,)
-        By how much the integrals over these differ from those over points.
+        Differences of the integrals over these from those over points.
     more_bent : ndarray, shape (pairs,)
-        By how much the integrals over these of -dG/dn differ in what grows as the square of the wavenumber.
+        Differences in the part of the integrals of -dG/dn that grows with the square of the wavenumber.
     """
 
     away: Array
@@ -57,7 +57,7 @@ class _Static:
 
     @property
     def rounded(self) -> _Static:
-        """The same in single precision: matrices are better conditioned than that by far."""
+        """The same in single precision, enough for these well-conditioned matrices."""
         pairs = (self.more_double, self.more_single, self.more_bent)
         away, double, single, *more = (one.astype(np.float32) for one in (self.away, self.double, self.single, *pairs))
         return _Static(away, double, single, self.near, *more)
@@ -84,8 +84,8 @@ class SurfacePressures:
     def within(self) -> Array:
         """Points within the body, away from its surface [m], shape (points, 3).
 
-        In balls that fit into it, at all depths up to their middles: a sphere has but one, where many of the fields at
-        which the inside resonates are zero.
+        They lie in inscribed balls, at all depths up to their centres: a sphere has only one centre, where many of the
+        resonant fields of the inside are zero.
         """
         points, normals = self.surface.points, self.surface.normals
         ball, least = inscribed_radius(points, normals, points), FREE * self._reach
@@ -97,7 +97,7 @@ class SurfacePressures:
 
     @cached_property
     def _reach(self) -> Array:
-        """Distances of the farthest corners of patches from their points [m]."""
+        """Largest distances of the corners of patches from their points [m]."""
         surface = self.surface
         away = surface.corners.reshape(-1, 4, 3) - surface.points[surface.owners, None]
         found = np.zeros(len(surface.points))
@@ -107,7 +107,7 @@ class SurfacePressures:
     def fit(self, wavenumber: float) -> Fit:
         """Return the pressures on the surface at a wavenumber of the sound [rad/m].
 
-        Errors are those of the equations together, on the surface and within, over what the motion gives there.
+        Errors are residuals of all equations, on the surface and within, over their right-hand sides.
         """
         shapes = self.surface.shapes.astype(np.float32)
         double, single = _layers(wavenumber, self._on_surface)
@@ -131,7 +131,7 @@ class SurfacePressures:
 
     @cached_property
     def _on_surface(self) -> _Static:
-        """What patches give at their own points: all together see half of all directions."""
+        """Integrals at the patches' own points: their solid angles add up to half of all directions."""
         static = self._apart(self.surface.points)
         place, patch = static.near
         static.more_double[place == patch] = 0.0
@@ -142,11 +142,11 @@ class SurfacePressures:
 
     @cached_property
     def _inside(self) -> _Static:
-        """What patches give at the points within."""
+        """Integrals at the points within."""
         return self._apart(self.within).rounded
 
     def _apart(self, places: Array) -> _Static:
-        """Return what patches give at places: near ones in closed form, others as points."""
+        """Return the integrals over patches at places: near ones in closed form, others as points."""
         surface = self.surface
         square, toward = np.zeros((2, len(places), len(surface.areas)))
         for axis in range(3):
@@ -181,7 +181,7 @@ class SurfacePressures:
 
 
 def _layers(wavenumber: float, static: _Static) -> tuple[Array, Array]:
-    """Return what unit pressures and unit accelerations of the patches give at places, shape (places, points) each.
+    """Return the matrices of unit pressures and unit accelerations of the patches, shape (places, points) each.
 
     In the precision of the distances.
     """

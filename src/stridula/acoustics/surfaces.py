@@ -27,11 +27,11 @@ class Surface:
     Attributes
     ----------
     points : ndarray, shape (points, 2)
-        Where they are, x and y [m].
+        Their x and y [m].
     areas : ndarray, shape (points,)
         Their areas [m²].
     shapes : callable
-        Takes points (n, 2), returns by how much each mode moves them out of the plane, shape (n, modes).
+        Takes points (n, 2), returns the displacement of each mode out of the plane, shape (n, modes).
     """
 
     points: Array
@@ -42,9 +42,9 @@ class Surface:
 def surface_of(panel: Panel, listener: Array, wavenumber: float, refinement: float = 1.0) -> Surface:
     """Return the elements of a panel for a listener.
 
-    Cells of 8 x 8 Gauss-Legendre points, over which modes and sound turn by 3 pi at most and that are no larger than
-    twice their distance to the listener. Cells of half the size move no response by more than 1e-5 of its largest
-    value.
+    Cells of 8 x 8 Gauss-Legendre points, over which the phase of modes and sound turns by 3 pi at most and that are no
+    larger than twice their distance to the listener. Cells of half the size move no response by more than 1e-5 of its
+    largest value.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def surface_of(panel: Panel, listener: Array, wavenumber: float, refinement: flo
     wavenumber : float
         Largest wavenumber of the sound [rad/m].
     refinement : float, optional
-        By how much smaller the cells are than that.
+        Factor by which the cells are smaller than that.
     """
     largest = panel.wavenumbers.max(axis=0)
     cells = _uniform(panel, PHASE / refinement / (largest + wavenumber))

@@ -26,12 +26,12 @@ from .responses import way_of
 MEMORY = 64e6
 # Samples by which the low-pass is ahead.
 REACH = 40.0
-# Bandwidth [Hz] below which a sound lacks what can be heard, which is said.
+# Bandwidth [Hz] below which a note states that audible frequencies are missing.
 AUDIBLE = 16e3
 
 
 class Motion(Protocol):
-    """How the modes of a track move."""
+    """Motion of the modes of a track."""
 
     words: str
     start: float
@@ -42,7 +42,7 @@ class Motion(Protocol):
     notes: list[str]
 
     def carried(self, angular_frequency: Array) -> Array:
-        """Return the numbers of the modes that are heard, of all by their frequencies [rad/s]."""
+        """Return the numbers of the modes that are heard, from the frequencies of all modes [rad/s]."""
 
     def accelerations(self, modes: Any) -> Array:
         """Return the accelerations of modes, by their numbers, shape (modes, samples or more)."""
@@ -60,12 +60,12 @@ def track_sound(
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
     """Return pressures (listeners, samples), their times, the listeners and attributes; arguments are as in `radiate`.
 
-    `silence` are the words for one, and why there is one without a force; `name` is that of the track in its system.
+    `silence` has a name for silence and its cause without a force; `name` is that of the track in its system.
 
     Raises
     ------
     ValueError
-        If the record is not usable, the track cannot be heard so, or a listener is where it cannot be heard.
+        If the record is not usable, the track has no such surface, or a listener is inside a body or behind the baffle.
     """
 
     def moved(panel: Panel) -> Motion:
@@ -85,7 +85,7 @@ def panel_sound(
     sample_rate: float | None,
     silence: tuple[str, str],
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
-    """Return the sound of a track that moves: `moved` takes its panel and returns how.
+    """Return the sound of a track; `moved` takes its panel and returns its motion.
 
     Other arguments, results and errors are those of `track_sound`.
     """
@@ -105,12 +105,12 @@ def panel_sound(
     time = np.arange(pressure.shape[1]) * motion.interval / float(ratio)
     distances = panel.distances(listeners)
     arrival = (motion.begins or 0.0) + distances / air.speed
-    # Beyond the reach of the low-pass, what comes before the first force can be heard is rounding.
+    # Earlier than the low-pass reaches before the first arrival, the pressure is rounding.
     early = np.maximum(arrival - REACH * motion.interval / float(ratio), distances / air.speed)
     pressure[time < early[:, None]] = 0.0
     notes = _notes(motion, len(kept), len(panel.wavenumbers), time[-1], arrival, silence)
     if bandwidth < AUDIBLE:
-        notes.append(f"whole up to {bandwidth:.4g} Hz only, for the record's sample rate")
+        notes.append(f"complete only up to {bandwidth:.4g} Hz, because of the record's sample rate")
     attributes = {
         "bandwidth": bandwidth,
         "modes": len(kept),
@@ -141,7 +141,7 @@ def _sum(modes: Array, motion: Motion, responses: list[Response]) -> Array:
 def _notes(
     motion: Motion, kept: int, modes: int, duration: float, arrival: Array, silence: tuple[str, str]
 ) -> list[str]:
-    """Return what is to be said of a sound, in words."""
+    """Return notes on a sound."""
     notes = []
     if motion.begins is None:
         notes.append(": ".join(silence))

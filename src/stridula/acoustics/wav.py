@@ -1,4 +1,4 @@
-"""Sound files that know how many pascals they hold."""
+"""Sound files that store the pressure of full scale."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .sample_rates import resampled
 RATES = (44100, 48000, 96000)
 SUBTYPES = ("PCM_24", "FLOAT")
 NORMALISED = "normalised"
-# Peak of a normalised file below full scale [dB]: what players make between the samples may rise above them.
+# Peak of a normalised file below full scale [dB]: the signal that players make may exceed its samples.
 HEADROOM = 1.0
 # Full scale of integers, one step beyond the largest value.
 STEPS = {"PCM_16": 2**15, "PCM_24": 2**23}
@@ -29,7 +29,7 @@ SCALE = re.compile(r"stridula: full_scale_pascal=(\S+) start_second=(\S+)")
 
 @dataclass(frozen=True)
 class SoundFile:
-    """A sound file that was written; in print, one line that says it all.
+    """A sound file that was written; it prints as a one-line summary.
 
     Attributes
     ----------
@@ -40,9 +40,9 @@ class SoundFile:
     sample_rate : int
         Sample rate [Hz].
     duration : float
-        How long it lasts [s].
+        Duration [s].
     peak : float
-        Largest sound pressure of its samples [Pa], which is not quite that of the sound at another sample rate.
+        Largest sound pressure of its samples [Pa], which differs slightly from that at another sample rate.
     full_scale : float
         Sound pressure of a sample of 1 [Pa]; the gain is one over it.
     normalised : bool
@@ -74,10 +74,10 @@ def write_wav(
     full_scale: float | str = NORMALISED,
     subtype: str = "PCM_24",
 ) -> SoundFile:
-    """Write sound pressures to a WAV file, one channel for each listener, the pressure of full scale inside.
+    """Write sound pressures to a WAV file, one channel for each listener, with the pressure of full scale.
 
-    Two listeners, the left ear first, make a binaural file. Nothing is ever clipped. The pressure of full scale stands
-    in the file's comment (RIFF INFO ICMT), so that `read_wav` gives pascals back.
+    Two listeners, the left ear first, make a binaural file. Nothing is ever clipped. The pressure of full scale is
+    stored in the file's comment (RIFF INFO ICMT), so that `read_wav` returns pascals.
 
     Parameters
     ----------
@@ -88,16 +88,16 @@ def write_wav(
     sample_rate : {48000, 44100, 96000}, optional
         Sample rate of the file [Hz]; see `resampled` for the low-pass.
     full_scale : float or "normalised", optional
-        Pressure of full scale [Pa], for a calibrated file: files of the same full scale are as loud, one against the
-        other, as what they hold. Or ``"normalised"``: the peak over all channels comes to 1 dB below full scale, and
-        silence, which stays silence, has a full scale of 1 Pa.
+        Pressure of full scale [Pa], for a calibrated file: files of the same full scale have the right loudness
+        relative to each other. Or ``"normalised"``: the peak over all channels is 1 dB below full scale, and silence,
+        which stays silence, has a full scale of 1 Pa.
     subtype : {"PCM_24", "FLOAT"}, optional
-        24-bit integers, or 32-bit floats of pressure over full scale, which also hold what is beyond it.
+        24-bit integers, or 32-bit floats of pressure over full scale, which also hold values beyond it.
 
     Returns
     -------
     SoundFile
-        What was written, the pressure of full scale among it.
+        Description of the file, with its pressure of full scale.
 
     Raises
     ------
@@ -116,12 +116,12 @@ def write_wav(
 def wav_of(
     name: str, pressure: xr.DataArray, sample_rate: int, full_scale: float | str, subtype: str
 ) -> tuple[memoryview, SoundFile]:
-    """Return a sound as the content of a WAV file and what stands in it; arguments are as in `write_wav`.
+    """Return a sound as the content of a WAV file and its description; arguments are as in `write_wav`.
 
     Parameters
     ----------
     name : str
-        What the sound is called in words.
+        Name of the sound in its summary.
     pressure : xarray.DataArray, shape (time,) or (time, listener)
         Sound pressure [Pa].
     sample_rate : int
@@ -161,12 +161,12 @@ def wav_of(
 
 
 def normalised_scale(peak: float) -> float:
-    """Return the full scale that a peak is `HEADROOM` below, 1 for silence."""
+    """Return the full scale that puts a peak `HEADROOM` below it, 1 for silence."""
     return peak * 10.0 ** (HEADROOM / 20.0) or 1.0
 
 
 def scale_comment(scale: float, start: float) -> str:
-    """Return the comment of a file whose full scale is a pressure [Pa] and that starts at a time [s]."""
+    """Return the comment of a file with a pressure of full scale [Pa] and a start time [s]."""
     return f"stridula: full_scale_pascal={scale!r} start_second={start!r}"
 
 
@@ -179,7 +179,7 @@ def encoded(samples: Array, rate: int, subtype: str, comment: str) -> memoryview
     options = {"samplerate": rate, "channels": samples.shape[1], "format": "WAV", "subtype": subtype}
     with soundfile.SoundFile(content, "w", **options) as file:
         file.comment = comment
-        # Whole numbers of our own rounding, which lie in the upper bytes.
+        # Integers rounded here, which lie in the upper bytes.
         steps = STEPS.get(subtype)
         file.write(np.rint(samples * steps).astype(np.int32) * (2**31 // steps) if steps else samples)
     return content.getbuffer()
@@ -193,7 +193,7 @@ def read_wav(path: str | Path, full_scale: float | None = None) -> xr.DataArray:
     path : str or Path
         A WAV file.
     full_scale : float, optional
-        Pressure of full scale [Pa]; what the file says, if left out.
+        Pressure of full scale [Pa]; that stored in the file if left out.
 
     Returns
     -------
@@ -203,7 +203,7 @@ def read_wav(path: str | Path, full_scale: float | None = None) -> xr.DataArray:
     Raises
     ------
     ValueError
-        If it is no sound file, or neither the file nor you say what its full scale is.
+        If it is not a sound file, or neither the file nor `full_scale` has its full scale.
     OSError
         If the file cannot be read.
     """
@@ -215,13 +215,13 @@ def read_wav(path: str | Path, full_scale: float | None = None) -> xr.DataArray:
         with soundfile.SoundFile(io.BytesIO(content)) as file:
             comment, rate, samples = file.comment, file.samplerate, file.read(dtype="float64", always_2d=True)
     except (soundfile.SoundFileError, TypeError) as error:
-        # The whole of its words names the bytes in memory, too.
+        # The full message also names the bytes in memory.
         reason = getattr(error, "error_string", error)
         raise ArgumentError("path", "be a sound file", str(path), got=f"{str(path)!r}: {reason}") from error
     found = SCALE.search(comment)
     if full_scale is None and found is None:
         raise ArgumentError(
-            "full_scale", "be given for a file that does not say its own", str(path), got=f"{str(path)!r} alone"
+            "full_scale", "be given for a file without a stated full scale", str(path), got=f"{str(path)!r} alone"
         )
     scale = float(found[1]) if full_scale is None and found else positive("full_scale", full_scale)
     start = float(found[2]) if found else 0.0

@@ -30,7 +30,7 @@ def a_weighting(frequency: Array) -> Array:
 def a_weighted(values: Array, rate: float) -> Array:
     """Return sound pressures A-weighted, by the analogue filter itself.
 
-    In the frequency domain, with silence behind: a filter in the time domain made from the same poles would bend at
+    In the frequency domain, with silence after the end: a filter in the time domain with the same poles would err at
     high frequencies.
 
     Parameters

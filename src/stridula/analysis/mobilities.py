@@ -176,7 +176,7 @@ def _of_body(response: Displacement, excitation: Displacement) -> _Motion:
     """Return the modes of a body alone."""
     body: Any = response.body
     if body != excitation.body:
-        words = "be of the body of the response, unless a system is given that has both"
+        words = "be on the body of the response, unless a system with both is given"
         raise ArgumentError("excitation", words, excitation.point)
     modes = body.modes()
     damping = modes.damping_rate if modes.damping_matrix is None else modes.damping_matrix

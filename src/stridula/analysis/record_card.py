@@ -13,7 +13,7 @@ import xarray as xr
 from ..arrays import Array
 from ..cards import Stroke, drawing
 from ..cards import card as draw_card
-from ..checks import ArgumentError, counted
+from ..checks import ArgumentError, counted, instance
 from ..records.by_point import by_point
 from ..records.by_surface import groups
 from ..records.checked import record
@@ -92,12 +92,15 @@ def card(run: xr.Dataset, system: System | None = None) -> RecordCard:
     Raises
     ------
     ValueError
-        If `run` is not a record of `simulate`, or lacks variables or attributes that a card needs.
+        If `run` is not a record of `simulate`, or lacks variables or attributes that a card needs, or `system` is no
+        System.
     """
     given = record("run", run, "normal_force")
     for name in ("ended", "sample_interval", "modes", "step", "scheme", "wall_time"):
         if name not in given.attrs:
             raise ArgumentError("run", f"be a record with the attribute {name}", run, got="one without")
+    if system is not None:
+        instance("system", system, System)
     return RecordCard(str(given.attrs.get("title", "")), facts_of(given, system), _force_over_time(given))
 
 

@@ -10,9 +10,9 @@ import xarray as xr
 
 from ..checks import ArgumentError, instance
 from ..contact import SurfaceContact, SurfacePoints
-from ..contact.resultants import AXES, RESULTANTS, resultants
 from ..records.by_point import by_point
 from ..records.checked import record
+from ..records.resultants import AXES, RESULTANTS, resultants
 from ..records.variables import STATUS_SHARE, attributes_of, described
 
 OF_POINTS = ("normal_force", "tangential_force", "slip_velocity", STATUS_SHARE.name)

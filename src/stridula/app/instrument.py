@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -57,36 +58,49 @@ class Instrument:
         self.last_seconds = LastSeconds(RATE, played)
         self.last_seconds.changed(0.0, played.toml)
 
+    def is_of(self, played: Playable) -> bool:
+        """Whether a scenario is of the case or text that is played."""
+        return played.origin == self.played.origin
+
     def change(self, played: Playable, revision: int) -> bool:
         """Continue as another scenario and return whether the motion continues; otherwise a stroke begins.
 
         Another case or text begins a stroke, as does any change after a stroke has ended.
         """
-        longer = self.longer if played.origin == self.played.origin else None
+        longer = self.longer if self.is_of(played) else None
         if longer is not None and played.scenario.step is None:
             played = played.stepped(longer)
         drawing = self.drawing if played.system == self.drawing.system else drawing_of(played.system)
         track, steps, contacts = self.live.system.track, self.live.ratio, len(self.live.system.contacts)
         what = (played.system, played.probes, played.scenario.scheme, played.scenario.step)
-        goes_on = played.origin == self.played.origin and not self.ended
+        goes_on = self.is_of(played) and not self.ended
         if goes_on:
             goes_on = self.live.change(*what)
         else:
             self.live.begin(*what)
-        name = _offered(self.wanted, played)
-        self._last *= played.sources[name].full_scale / self.heard_as.full_scale
-        self.played, self.revision = played, revision
-        self.longer, self.drawing = longer, drawing
-        self.last_seconds.goes_on_as(played)
-        self.last_seconds.changed(self.played_samples / RATE, played.toml)
+        name, source = _offered(self.wanted, played), self.source
         now = (self.live.system.track, self.live.ratio, len(self.live.system.contacts))
         if (track, steps, contacts) != now or name != self.name:
-            self.name, self.source = name, source_of(name, self.live)
-        self._must_blend, self._still = True, 0
+            source = source_of(name, self.live)
+        self._now_plays(played, revision, name, source)
+        self.longer, self.drawing = longer, drawing
         if not goes_on:
             self._begin_stroke()
-        self._since_repeat = round(TRUST * RATE)
         return goes_on
+
+    def begin_as(self, other: Instrument, revision: int) -> None:
+        """Begin a stroke of the scenario of another instrument that has not been played yet."""
+        self.live, self.longer, self.drawing = other.live, other.longer, other.drawing
+        self._now_plays(other.played, revision, other.name, other.source)
+        self._begin_stroke()
+
+    def _now_plays(self, played: Playable, revision: int, name: str, source: Any) -> None:
+        self._last *= played.sources[name].full_scale / self.heard_as.full_scale
+        self.played, self.revision, self.name, self.source = played, revision, name, source
+        self.last_seconds.goes_on_as(played)
+        self.last_seconds.changed(self.played_samples / RATE, played.toml)
+        self._must_blend, self._still = True, 0
+        self._since_repeat = round(TRUST * RATE)
 
     def listen_to(self, name: str) -> None:
         """Change the source of the sound, with a smooth transition at the same level.

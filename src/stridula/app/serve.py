@@ -19,7 +19,6 @@ from ..studies.task import use_one_thread
 from .caller import Caller, is_news
 from .instrument import RATE, Instrument
 from .messages import LARGEST
-from .parts import Part, packed
 from .playable import PRESETS, SYSTEMS, playable
 from .server import create_app
 
@@ -108,7 +107,7 @@ def _get_ready() -> None:
     for case in PRESETS[:3:2]:
         instrument = Instrument(playable(case, None, {}))
         for number, key in enumerate(("contact.friction.coefficient", "slider.length")):
-            _ = [packed(part) for part in instrument.play(RATE // 100) if isinstance(part, Part)]
+            list(instrument.play(RATE // 100))
             instrument.change(playable(case, None, {key: 0.5}), number)
         list(instrument.play(RATE // 100))
     # Cases with several contacts, coupled modes and a rigid track.

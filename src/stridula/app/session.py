@@ -71,7 +71,7 @@ class Session:
         # Seconds of a system played per second; time taken and samples played since its measurement.
         self.speed: float | None = None
         self._taken, self._made = 0.0, 0
-        # Held while the scenario changes.
+        # Held while the scenario changes and while parts are played.
         self._changing = asyncio.Lock()
 
     async def run(self) -> None:
@@ -111,7 +111,12 @@ class Session:
         await _sent(self.socket.send_json({"type": what, **words}))
 
     async def _answer(self, message: Message) -> None:
-        if type(message) in ANSWERS:
+        if type(message) is not Pull and "scene" in self._tasks:
+            # Only the sound continues while another scenario is prepared.
+            await self._tasks.pop("scene")
+        if type(message) is Scene and self.instrument is not None:
+            self._do("scene", self._scene_beside(message))
+        elif type(message) in ANSWERS:
             await ANSWERS[type(message)](self, message)
         elif self.instrument is None:
             raise ArgumentError("scene", "be given first")
@@ -129,31 +134,24 @@ class Session:
             self.instrument.repeat(message.on)
 
     async def _scene(self, scene: Scene) -> None:
-        """Play another scene, or its playable part."""
+        """Play another scene, or its playable part; the present one sounds until it is ready."""
         refused: dict[str, list[str]] = {}
         try:
             found = await asyncio.to_thread(held, scene, self.scene)
             refused, played = found.refused, found.played
             if refused and self.scene is not None and _is_same(found.scene, self.scene):
                 raise ScenarioError(found.problems)
+            other = await self._prepared(played)
             async with self._changing:
-                instrument, goes_on = await asyncio.to_thread(self._play, played, scene.revision)
+                goes_on = await self._play(played, scene.revision, other)
+                self.scene = found.scene
+                # Before the first part of it.
+                await self._tell_scene(scene.revision, goes_on, refused)
         except MemoryError:
             problems = ["scenario must fit into memory"]
         except ValueError as error:
             problems = _lines(error)
         else:
-            self.scene = found.scene
-            told = {"goes_on": goes_on, "refused": refused, "kept": _said(found.scene) if refused else None}
-            described = _described(instrument, self.speed)
-            drawn, self._drawn = self._drawn, described.get("drawn")
-            if drawn and drawn == self._drawn:
-                # Bodies in space are large, and are not sent again.
-                described = {
-                    name: value for name, value in described.items() if name not in instrument.drawing.described
-                }
-                described["drawn"] = drawn
-            await self._tell("scene", revision=scene.revision, **told, **described)
             self._do("theory", self._theory(played, scene.revision))
             if "now" not in self._tasks or self._tasks["now"].done():
                 self._do("now", self._now())
@@ -161,20 +159,42 @@ class Session:
         told = {"problems": problems, "refused": refused or {"": problems}, "kept": _said(self.scene)}
         await self._tell("refused", revision=scene.revision, **told)
 
-    def _play(self, played: Playable, revision: int) -> tuple[Instrument, bool]:
-        """Return the instrument, and whether its motion continues."""
-        goes_on = False
-        if self.instrument is None:
-            self.instrument = Instrument(played, self.source)
-            self.instrument.revision, self.instrument.repeats = revision, self.repeats
+    async def _scene_beside(self, scene: Scene) -> None:
+        with suppress(WebSocketDisconnect):
+            await self._scene(scene)
+
+    async def _prepared(self, played: Playable) -> tuple[Instrument, float | None] | None:
+        """Return another case or text as an instrument and its speed, None if it is the same."""
+        if self.instrument is not None and self.instrument.is_of(played):
+            return None
+        return await asyncio.to_thread(_begun, played, self.source)
+
+    async def _play(self, played: Playable, revision: int, other: tuple[Instrument, float | None] | None) -> bool:
+        """Play a scenario, or another one that is prepared, and return whether the motion continues."""
+        if other is None:
+            assert self.instrument is not None
+            goes_on, speed = await asyncio.to_thread(_changed, self.instrument, played, revision)
         else:
-            goes_on = self.instrument.change(played, revision)
+            (begun, speed), goes_on = other, False
+            if self.instrument is None:
+                self.instrument = begun
+                begun.revision, begun.repeats = revision, self.repeats
+            else:
+                self.instrument.begin_as(begun, revision)
         if not goes_on:
-            self.speed = None if played.is_fast else self.instrument.keep_up()
-            self._taken, self._made = 0.0, 0
-        # Computed here because it may be slow.
-        _ = self.instrument.drawing.described
-        return self.instrument, goes_on
+            self.speed, self._taken, self._made = speed, 0.0, 0
+        return goes_on
+
+    async def _tell_scene(self, revision: int, goes_on: bool, refused: dict[str, list[str]]) -> None:
+        assert self.instrument is not None
+        told = {"goes_on": goes_on, "refused": refused, "kept": _said(self.scene) if refused else None}
+        described = _described(self.instrument, self.speed)
+        drawn, self._drawn = self._drawn, described.get("drawn")
+        if drawn and drawn == self._drawn:
+            # Bodies in space are large, and are not sent again.
+            parts = self.instrument.drawing.described
+            described = {name: value for name, value in described.items() if name not in parts} | {"drawn": drawn}
+        await self._tell("scene", revision=revision, **told, **described)
 
     async def _now(self) -> None:
         """Report the present motion once a second."""
@@ -216,6 +236,10 @@ class Session:
         early = (self._played - allowed) / RATE - AHEAD
         if early > 0.0:
             await asyncio.sleep(early / FASTEST)
+        async with self._changing:
+            await self._play_parts(instrument, pull)
+
+    async def _play_parts(self, instrument: Instrument, pull: Pull) -> None:
         parts: list[bytes] = []
         start = clock.monotonic()
         for number, samples in enumerate(self._cut(pull)):
@@ -310,6 +334,23 @@ async def _sent(sending: Coroutine[Any, Any, None]) -> None:
         await sending
     except RuntimeError:
         raise WebSocketDisconnect(GONE) from None
+
+
+def _begun(played: Playable, source: str) -> tuple[Instrument, float | None]:
+    """Return a scenario as an instrument, and the seconds it plays per second, None if it is fast enough."""
+    instrument = Instrument(played, source)
+    speed = None if played.is_fast else instrument.keep_up()
+    # Computed here because it may be slow.
+    _ = instrument.drawing.described
+    return instrument, speed
+
+
+def _changed(instrument: Instrument, played: Playable, revision: int) -> tuple[bool, float | None]:
+    """Change what an instrument plays; return whether the motion continues, and its speed if not, as in `_begun`."""
+    goes_on = instrument.change(played, revision)
+    speed = None if goes_on or played.is_fast else instrument.keep_up()
+    _ = instrument.drawing.described
+    return goes_on, speed
 
 
 def _all_said(variables: dict[str, Array]) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from ..arrays import Array
 from ..checks import ArgumentError, at_least, brief, choice, finite, instance, listed
 from ..declared import CountFrom0, Each, Frequency, Number, Own, check_declared
 from ..histories import HISTORIES, Constant, History
+from ..ordinary import NotOrdinary, of_ordinary_size
 from .body_surfaces import HIGHEST, RingSurface, largest_part
 from .cards import HasCard
 from .circular_path import CircularPath
@@ -22,7 +23,6 @@ from .damping import DampingLaw, checked_damping, damping_rates
 from .drawn_surfaces import DrawnRings, DrawnSurface
 from .long_searches import search_told
 from .modes import BodyPoint, Modes, hashed_once
-from .ordinary import NotOrdinary, of_ordinary_size
 from .profile_mesh import ProfileMesh
 from .profiles import PROFILES, Profile
 from .ring_surfaces import cut_outline
@@ -608,7 +608,7 @@ def _box(place: Any) -> tuple[tuple[float, float], tuple[float, float]]:
             raise ArgumentError("place", words, place)
         low, high = (finite(f"place, {axis}[{k}]", one) for k, one in enumerate(values))
         if low > high:
-            raise ArgumentError("place", "have ranges that do not fall", place)
+            raise ArgumentError("place", "have ranges whose first number is not above the second", place)
         ranges.append((low, high))
     return ranges[0], ranges[1]
 

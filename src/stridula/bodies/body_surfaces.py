@@ -78,11 +78,11 @@ class PointSurface:
         return self
 
     def only(self, modes: Sequence[int]) -> PointSurface:
-        """Return the surface with some of its modes, by their numbers."""
+        """Return the surface with some of its modes, by number."""
         return replace(self, shapes=self.shapes[:, modes])
 
     def placed(self, frame: Array, origin: Array) -> PointSurface:
-        """Return the surface with its axes turned to the rows of a frame, and its origin moved to a place [m]."""
+        """Return the surface with its axes along the rows of a frame and its origin at a place [m]."""
         corners = self.corners.reshape(-1, 3) @ frame + origin
         return PointSurface(
             self.points @ frame + origin,
@@ -137,7 +137,7 @@ class RingSurface:
         return _content(self)
 
     def only(self, modes: Sequence[int]) -> RingSurface:
-        """Return the surface with some of its modes, by their numbers."""
+        """Return the surface with some of its modes, by number."""
         return replace(self, shapes=self.shapes[:, modes], orders=self.orders[modes], sides=self.sides[modes])
 
     def round(self, theta: Array) -> Array:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..cards import Stroke, band, card, drawing, edges_seen, flattened, spoken
+from .sections import Material
 
 # Degrees of freedom up to which modes are computed in less than a tenth of a second.
 FEW = 300
@@ -52,11 +53,16 @@ def facts_of(body: Any) -> dict[str, str | Sequence[str]]:
     return found
 
 
+def materials_of(body: Any) -> dict[str, Material]:
+    """Return the materials of a body by the names of its regions; a material of all regions has an empty name."""
+    given = getattr(body, "materials", None) or getattr(body, "material", None) or {}
+    by_name = dict(given) if isinstance(given, Mapping) else {"": given}
+    different = list(dict.fromkeys(by_name.values()))
+    return {"": different[0]} if len(different) == 1 else by_name
+
+
 def _materials(body: Any) -> list[str]:
-    given = getattr(body, "materials", None) or getattr(body, "material", None)
-    if given is None:
-        return []
-    by_name = given if isinstance(given, Mapping) else {"": given}
+    by_name = materials_of(body)
     lines = []
     for name, one in by_name.items():
         words = f"{spoken(one.young, 'Pa')}, {one.density:.4g} kg/m³, Poisson's ratio {one.poisson:.3g}"

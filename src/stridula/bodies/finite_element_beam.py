@@ -13,6 +13,7 @@ import scipy.linalg
 from ..arrays import Array, in_space
 from ..checks import ArgumentError, instance, within
 from ..declared import Angle, Choice, Count, Frequency, Length, Name, Own, check_declared
+from ..ordinary import check_overflow, of_ordinary_size
 from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .cards import HasCard
 from .damping import DampingLaw, checked_damping, damping_rates
@@ -26,7 +27,6 @@ from .finite_elements import (
     element_stiffness,
 )
 from .modes import BodyPoint, Modes, hashed_once
-from .ordinary import check_overflow, of_ordinary_size
 from .prism_surfaces import beam_surface, has_outline
 from .sections import Circle, Material, Rectangle, Section
 
@@ -184,7 +184,7 @@ class FiniteElementBeam(HasCard):
 
     @property
     def has_surface(self) -> bool:
-        """Whether its outer surface is known: that of a rectangle or a circle."""
+        """Whether its section has an outline, a rectangle or a circle, so that it has a surface."""
         return has_outline(self.section)
 
     def surface(self, frequency: float = HIGHEST, held_x: bool = False) -> PointSurface:

@@ -17,16 +17,16 @@ LARGE = 1000
 def search_told(body: Any, size: int) -> Iterator[None]:
     """Log the beginning and the end of the search for the modes of a body of many degrees of freedom, `size`.
 
-    The first record describes the search in ``doing``, the last one has None.
+    The first record describes the search in ``task``, the last one has None.
     """
     if size < LARGE:
         yield
         return
     name = body.name or f"the {body.kind} body"
-    doing = f"modes of {name} ({size:,} degrees of freedom)".replace(",", " ")
-    LOGGER.info("%s ...", doing, extra={"doing": doing})
+    task = f"modes of {name} ({size:,} degrees of freedom)".replace(",", " ")
+    LOGGER.info("%s ...", task, extra={"task": task})
     start = perf_counter()
     try:
         yield
     finally:
-        LOGGER.info("%s: %.3g s", doing, perf_counter() - start, extra={"doing": None})
+        LOGGER.info("%s: %.3g s", task, perf_counter() - start, extra={"task": None})

@@ -42,7 +42,7 @@ def read_profile(
     points = np.asarray(mesh.points, dtype=float)
     out = [axis for axis in range(points.shape[1]) if axis not in columns]
     if max(columns) >= points.shape[1] or np.ptp(points[:, out], axis=0).any():
-        raise ArgumentError("plane", f"be the plane of the mesh in {named(path)}", plane)
+        raise ArgumentError("plane", f"be the plane in which the mesh of {named(path)} lies", plane)
     cells, numbers = _joined(mesh, (*TRIANGLES, *QUADRILATERALS))
     if not len(cells):
         raise ArgumentError("path", "be a file with triangles or quadrilaterals", got=named(path))

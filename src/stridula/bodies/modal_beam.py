@@ -12,11 +12,11 @@ import numpy as np
 from ..arrays import in_space
 from ..checks import ArgumentError, at_least, instance, within
 from ..declared import Count, CountFrom0, Frequency, Length, Name, Own, Tension, check_declared
+from ..ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .drawn_lines import places_between
 from .modes import Array, BodyPoint, Modes, hashed_once
-from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .paths import Path, along_one_angle
 from .planes import InPlane, checked_plane
 from .prism_surfaces import beam_surface, has_outline
@@ -181,7 +181,7 @@ class ModalBeam(InPlane):
 
     @property
     def has_surface(self) -> bool:
-        """Whether its outer surface is known: that of a rectangle or a circle."""
+        """Whether its section has an outline, a rectangle or a circle, so that it has a surface."""
         return has_outline(self.section)
 
     def surface(self, frequency: float = HIGHEST) -> PointSurface:

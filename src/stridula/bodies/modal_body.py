@@ -135,7 +135,7 @@ class ModalBody(NamedPoints):
             Name in records; that of the body if left out.
         origin : sequence of float, optional
             World place of the tip of a `FiniteElementBeam` or of abscissa 0 of a `ModalBeam` or `ModalPlate` [m]. With
-            it the body knows the places of its points, and has its surface for sound.
+            it the body has a surface for sound, and its points have places in the world.
 
         Raises
         ------
@@ -285,7 +285,7 @@ class ModalBody(NamedPoints):
             If it is not known.
         """
         if self.outer_surface is None:
-            raise ArgumentError("outer_surface", "be given to be heard", got="none")
+            raise ArgumentError("outer_surface", "be given for sound", got="none")
         return self.outer_surface
 
     @property

@@ -12,11 +12,11 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, at_most, count, finite, instance, positive, within
+from ..ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .drawn_lines import places_between
 from .modes import BodyPoint, Modes
-from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .paths import Path, Waves, along_one_angle
 from .plane_stress import PlaneStress, lowest, plane_stress, rigid
 from .planes import InPlane, checked_plane

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from .ordinary import check_mode_count
+from ..ordinary import check_mode_count
 from .sections import Material
 
 

@@ -15,8 +15,8 @@ from scipy.sparse.linalg import LinearOperator, eigsh, splu
 from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
+from ..ordinary import check_mode_count
 from .fourier_elements import FourierElements, U, V, W
-from .ordinary import check_mode_count
 
 # Frequency of the negative shift, as a share of the cutoff: far enough from rigid motions for the factorisation.
 SHIFT = 0.1

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError, instance, positive
+from ..ordinary import of_ordinary_size
 from .cards import FEW
 from .damping import DampingLaw, Rayleigh, checked_damping
 from .long_searches import search_told
@@ -36,7 +37,6 @@ from .matrix_input import (
 )
 from .modes import Modes
 from .named_points import NamedPoints
-from .ordinary import of_ordinary_size
 from .reduction import Reduction, reduce_body
 from .sparse_reduction import reduce_sparse_body
 

@@ -92,7 +92,7 @@ def _all_modes(body: Any) -> tuple[Array, Array]:
     if not (np.isfinite(mass).all() and np.isfinite(stiffness).all()):
         raise ArgumentError(
             "stiffness",
-            "be of a size that mass can carry",
+            "be of an ordinary size relative to mass",
             got=(
                 f"up to {np.abs(body.stiffness).max():.6g} N/m on masses from {np.diag(body.mass).min():.6g} "
                 "kg: frequencies overflow"

@@ -18,6 +18,7 @@ import scipy.sparse
 from ..arrays import Array
 from ..checks import ArgumentError, at_most, choice, count, instance, listed, positive
 from ..declared import Frequency, Own
+from ..ordinary import of_ordinary_size
 from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .cards import FEW
 from .damping import DampingLaw, checked_damping
@@ -28,7 +29,6 @@ from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
 from .matrix_input import check_finite, numbers
 from .modes import BodyPoint, Modes
 from .named_points import NamedPoints
-from .ordinary import of_ordinary_size
 from .sections import Material
 from .solid_elements import assembled
 from .solid_mesh import Face, SolidMesh, place_of
@@ -490,7 +490,7 @@ def _elements_of(materials: Any, mesh: SolidMesh) -> list[tuple[Material, Array]
             others = listed(name for name in mesh.volumes if name not in materials)
             raise ArgumentError(
                 "materials",
-                "give each element one",
+                "give each element a material",
                 got=f"{bad.sum()} of {bad.size} {words}; other groups: {others}",
             )
     return found

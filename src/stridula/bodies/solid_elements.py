@@ -173,8 +173,8 @@ def _check_shared(kind: ElementKind, elements: Array) -> None:
         if not apart == len(np.unique(corners, axis=0)) == len(np.unique(middles)):
             raise ArgumentError(
                 "elements",
-                "share the nodes in the middle of an edge or a face as they share its corners",
-                got=f"{apart} pairs of an edge or a face and its middle for {len(np.unique(corners, axis=0))} of them",
+                "share the middle node of an edge or a face if they share its corners",
+                got=f"{apart} middle nodes for {len(np.unique(corners, axis=0))} edges or faces",
             )
 
 

@@ -81,7 +81,7 @@ def _read(path: str | os.PathLike[str], form: str, prefix: str) -> Any:
     except OSError:
         raise
     except MemoryError:
-        raise ValueError(f"{prefix}: it announces more than memory holds") from None
+        raise ValueError(f"{prefix}: it announces more data than fit into memory") from None
     except SystemExit:
         words = " ".join(said.getvalue().split()) or "it is damaged"
         raise ValueError(f"{prefix}: {words[:160]}") from None
@@ -102,7 +102,7 @@ def _parts(held: Any, groups: dict[str, dict[int, Array]]) -> dict[str, Any]:
     of_blocks = [(block.type, np.asarray(block.data, dtype=np.int64)) for block in blocks]
     named = np.concatenate([block.ravel() for _, block in of_blocks])
     if named.size and (named.min() < 0 or named.max() >= len(places)):
-        raise ArgumentError("path", f"name nodes that it holds, {len(places)} in all", got=int(named.max()))
+        raise ArgumentError("path", f"refer to nodes that it contains, {len(places)} in all", got=int(named.max()))
     if is_whole:
         given = np.concatenate([block for _, block in of_blocks])
         kind, owner, ends = KINDS[kinds[0]], np.arange(len(given)), np.zeros((0, 2), dtype=np.int64)

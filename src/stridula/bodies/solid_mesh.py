@@ -191,7 +191,7 @@ class SolidMesh:
             raise ArgumentError("radii", "rise", radii)
         start, end = _two("angles", angles)
         if not start < end <= start + 2.0 * np.pi * (1.0 + 1e-12):
-            raise ArgumentError("angles", "rise by at most 2 pi", angles)
+            raise ArgumentError("angles", "increase, by at most 2 pi in all", angles)
         heights = _heights(height)
         return cls(**solid_shapes.sector((inner, outer), (start, end), heights, parts, axis))
 

@@ -53,7 +53,7 @@ def overlaid(first: Face, first_mesh: SolidMesh, second: Face, second_mesh: Soli
         if covered < (1.0 - 1e-6) * first.area[face]:
             share = 1.0 - covered / first.area[face]
             raise ArgumentError(
-                "track_face", "lie before the whole face", got=f"{share:.1%} of face {face} over nothing"
+                "track_face", "lie opposite the whole face", got=f"{share:.1%} of face {face} opposite nothing"
             )
     found = np.concatenate(places)
     return FacePoints(found, np.array(areas), np.tile(normal, (len(found), 1)))

@@ -290,7 +290,9 @@ def _with_rigid(problem: SparseProblem, squared: Array, shapes: Array, rounding:
     if squared.size and squared[0] <= rounding:
         zero = int(np.sum(squared <= rounding))
         raise ArgumentError(
-            "mesh", "hold together", got=f"{zero} motions without stiffness: parts that hinge on a node or an edge"
+            "mesh",
+            "be rigidly connected",
+            got=f"{zero} motions without stiffness: parts are joined at a node or an edge only",
         )
     rigid = problem.rigid
     shapes = shapes - rigid @ ((problem.mass @ rigid).T @ shapes)

@@ -8,8 +8,8 @@ import sys
 
 from ..extras import MissingPackage, named_extras
 from .consoles import print_anything
-from .doings import doings_shown
 from .exits import BAD_INPUT, GOOD, INTERRUPTED, failed, say, terminated_as_interrupted
+from .long_tasks import tasks_shown
 
 
 def main() -> None:
@@ -29,7 +29,7 @@ def main() -> None:
 
 def _run() -> int:
     try:
-        with doings_shown(), named_extras():
+        with tasks_shown(), named_extras():
             from .commands import app
 
             result = app(standalone_mode=False)

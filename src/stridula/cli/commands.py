@@ -192,7 +192,7 @@ def sound(
         bool | None,
         typer.Option(
             "--baffled/--unbaffled",
-            help="Flat tracks in an endless wall, or in free air; default: in a wall in the plane, free in space.",
+            help="Flat tracks in an infinite wall, or in free air; default: in a wall in the plane, free in space.",
         ),
     ] = None,
 ) -> None:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
-from ..bodies import Material, ModalBeam
+from ..bodies.cards import materials_of
 from ..scenarios.errors import ScenarioError
 from ..scenarios.load import load_scenario
 from ..system import System
@@ -34,10 +34,7 @@ def say_doubts(name: str) -> None:
 
 
 def _of(name: str, body: Any) -> Iterator[str]:
-    given = [getattr(body, word, None) for word in ("material", "materials")]
-    made_of = next((one for one in given if isinstance(one, (Material, Mapping))), {})
-    materials = made_of if isinstance(made_of, Mapping) else {"": made_of}
-    for region, one in materials.items():
+    for region, one in materials_of(body).items():
         whose = f"{name}, {region}" if region else name
         if not YOUNG[0] <= one.young <= YOUNG[1]:
             unit = "MPa" if MEGA <= one.young < YOUNG[0] else "GPa"
@@ -49,5 +46,5 @@ def _of(name: str, body: Any) -> Iterator[str]:
         across = getattr(body.section, "height", getattr(body.section, "diameter", 0.0))
         if across > 0.5 * body.length:
             yield f"{name}: {across:.4g} m thick and {body.length:.4g} m long; beams are slender here"
-    if isinstance(body, ModalBeam) and sum(body.harmonics) > MOST_MODES:
-        yield f"{name}: {sum(body.harmonics)} modes below its cutoff; a lower cutoff is faster"
+    if (modes := sum(getattr(body, "harmonics", ()))) > MOST_MODES:
+        yield f"{name}: {modes} modes below its cutoff; a lower cutoff is faster"

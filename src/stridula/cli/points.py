@@ -133,7 +133,7 @@ def numbers_of(text: str) -> tuple[str, list[float], str]:
     numbers, units = [one[0] for one in known if one], {one[1] for one in known if one}
     rises = all(one < other for one, other in pairwise(numbers))
     if None in known or len(units) != 1 or len(numbers) < 2 or not rises:
-        raise ArgumentError("--vary", "give at least 2 rising numbers of one unit here", text)
+        raise ArgumentError("--vary", "give at least 2 increasing numbers in one unit for this command", text)
     return key, numbers, units.pop()
 
 

@@ -50,7 +50,7 @@ def run_scenario(
         with bar(scenario.title or name) as show:
             record = scenario.simulate(watchers=[told_of_time(show)])
     except (Interrupted, Diverged) as stop:
-        interrupted = isinstance(stop, Interrupted)
+        interrupted = isinstance(stop, KeyboardInterrupt)
         kept = _finish(stop.record, scenario, name, out, None if interrupted else plot)
         words = [stop.reason]
         words.append("nothing was kept (no --out)" if out is None else f"the record so far is in {out}")
@@ -75,7 +75,7 @@ def _check_wav(wav: str, name: str, out: str | None, plot: str | None, scenario:
     check_ending(wav)
     check_hearable(scenario.system, scenario.surface_rate)
     if scenario.duration * scenario.sample_rate < 1.5:
-        words = f"be at least {at_least(2.0 / scenario.sample_rate)} s, two samples, to be heard"
+        words = f"be at least {at_least(2.0 / scenario.sample_rate)} s, two samples, for its sound"
         raise ArgumentError("duration", words, scenario.duration)
 
 

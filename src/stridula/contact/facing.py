@@ -46,7 +46,9 @@ def on_solid(body: SolidBody, face: str, place: Array, normal: Array, _: FacePoi
             if best is None or abs(far[number]) < abs(best[0]):
                 best = float(far[number]), number
     if best is None:
-        raise ArgumentError("track_face", "lie before the whole face", face, got=f"nothing before {words_of(place)}")
+        raise ArgumentError(
+            "track_face", "lie opposite the whole face", face, got=f"nothing opposite {words_of(place)}"
+        )
     far, number = best
     return body.at((place + far * normal).tolist()), -normal if faces.normal[number] @ normal < 0.0 else normal, far
 
@@ -66,7 +68,7 @@ def on_revolution(body: AxisymmetricBody, _: str, place: Array, normal: Array, p
         share = (way[0] * apart[:, 1] - way[1] * apart[:, 0]) / toward
     met = np.flatnonzero((share >= -BEYOND) & (share <= 1.0 + BEYOND) & (np.abs(toward) > 0.0) & np.isfinite(far))
     if not met.size:
-        raise ArgumentError("track", "lie before the whole face", got=f"nothing before {words_of(place)}")
+        raise ArgumentError("track", "lie opposite the whole face", got=f"nothing opposite {words_of(place)}")
     side = int(met[np.abs(far[met]).argmin()])
     found = start[side] + np.clip(share[side], 0.0, 1.0) * along[side]
     # The profile is to the left of its outline.

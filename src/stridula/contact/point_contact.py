@@ -104,7 +104,7 @@ class PointContact:
         if self.track_body == self.tip.body:
             body = brief(self.tip.body)
             raise ArgumentError(
-                "track", "be another body than the tip's (equal ones need names)", self.track, got=f"{body} for both"
+                "track", "be a body other than the tip's (equal bodies need names)", self.track, got=f"{body} for both"
             )
         if not isinstance(self.friction, FrictionLaw):
             instance("friction", self.friction, LAWS)
@@ -218,6 +218,13 @@ class PointContact:
     def rigid_track(self) -> RigidTrack | None:
         """The track if it is rigid."""
         return self.track if isinstance(self.track, RigidTrack) else None
+
+    def reaches(self, place: float) -> bool:
+        """Return whether a tip at an abscissa [m] is on its track; rigid tracks and points have no ends."""
+        if self.path_body is None:
+            return True
+        low, high = self.path_body.ends
+        return bool(low < place < high)
 
     @property
     def placed_end(self) -> BodyPoint | None:

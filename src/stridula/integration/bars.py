@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Protocol
 
 from ..checks import instance
-from ..doings import told_of_doings
+from ..long_tasks import notified_of_tasks
 from .compiled_code import tell_of_compiling
 from .watchers import Progress, Watcher
 
@@ -47,10 +47,10 @@ def bar(title: str, asked: bool = False) -> Iterator[Show]:
     """
     with _bar(title, asked) as shown:
 
-        def tell(doing: str | None) -> None:
-            shown.say(PREPARING if doing is None else f"{doing} ...")
+        def tell(task: str | None) -> None:
+            shown.say(PREPARING if task is None else f"{task} ...")
 
-        with told_of_doings(tell), tell_of_compiling(lambda: shown.say(COMPILING)):
+        with notified_of_tasks(tell), tell_of_compiling(lambda: shown.say(COMPILING)):
             yield shown.show
 
 

@@ -13,17 +13,15 @@ from .._kernels import layout as at
 from .._kernels.contact import SEPARATED
 from ..arrays import Array
 from ..checks import instance, positive
-from ..contact import PointContact
-from ..histories import Constant
 from ..lowering import Assembly, Signal, assemble, with_travel
 from ..lowering.blocks import Blocks, blocks_of
+from ..lowering.carry_over import Before
 from ..lowering.schemes import ExactModal, Scheme
 from ..records import Probe
 from ..records.state import State
 from ..records.variables import ALONG_TANGENTS
 from ..system import System
 from .belief import Belief
-from .carry_over import Before
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
 from .equilibrium_start import in_equilibrium
@@ -269,14 +267,14 @@ class LiveMarch:
         pairs = zip(before.system.contacts, system.contacts, strict=True)
         moved = np.array([now.at - then.at for then, now in pairs])
         places = state.carried[firsts, at.ABSCISSA] + moved
-        if not all(map(_is_on_track, system.contacts, places)):
+        if not all(contact.reaches(place) for contact, place in zip(system.contacts, places, strict=True)):
             self.restart()
             return False
         position, velocity = before.motion_as(system, arrays, state, self.time)
         if before.has_modes_of(system) and (self.step, self.scheme) == (before.step, before.scheme) and not moved.any():
             self._go_on(state, places, position, velocity, before.system)
             return True
-        if any(type(one.turning.history) is not Constant for one in arrays.turning):
+        if not all(one.is_steady for one in arrays.turning):
             # A turning velocity with a history would start from its beginning.
             self.restart()
             return False
@@ -385,14 +383,6 @@ class LiveMarch:
             if contact.path_body is not None:
                 own[list(ON_THE_TRACK)] += place - own[at.ABSCISSA]
         self._go(state)
-
-
-def _is_on_track(contact: PointContact, place: float) -> bool:
-    """Return whether a tip at an abscissa is on its track; rigid tracks and points have no ends."""
-    if contact.path_body is None:
-        return True
-    low, high = contact.path_body.ends
-    return bool(low < place < high)
 
 
 def _opening(arrays: Assembly, places: Array, position: Array, gaps: Array) -> Array:

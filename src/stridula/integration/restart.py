@@ -13,9 +13,9 @@ import xarray as xr
 from .._kernels import layout as at
 from ..arrays import Array
 from ..checks import ArgumentError, brief, instance, listed
-from ..contact import LAWS
-from ..lowering import Assembly, Signal, going_on, with_travel
+from ..lowering import Assembly, Signal, with_motion_so_far, with_travel
 from ..lowering.blocks import Recurrence
+from ..lowering.contact_rows import STATEFUL
 from ..lowering.schemes import Scheme
 from ..records import Probe
 from ..records.provenance import scenario_toml
@@ -24,8 +24,6 @@ from ..system import System
 from .decimation import Decimator
 from .timing import Timing
 
-# Laws with an internal state, which cannot be transferred to another law.
-STATEFUL = tuple(law.law for law in LAWS if law.state_units)
 STATE = ("modal", "remainder", "carried", "energies")
 ATTRIBUTES = ("ended", "scenario", "scheme", "step", "steps_per_sample", "last_step", "initial_energy")
 # Larger states overflow in the units of the march.
@@ -98,7 +96,7 @@ def _check_whole(start: xr.Dataset) -> None:
             "start",
             f"be a record up to its final state, at {last * step:.6g} s",
             start,
-            got=f"a last time of {got}: a record that is cut cannot be continued, run as far as that first",
+            got=f"a last time of {got}: a cut record cannot be continued; run up to its last time first",
         )
 
 
@@ -164,7 +162,7 @@ def moved_on(
     turns = not np.array_equal(here, was)
     if turns or offset.any():
         moved = replace(arrays, motion=described)
-        arrays = going_on(moved, offset, last * step, was[0] + kept[2] if turns else None)
+        arrays = with_motion_so_far(moved, offset, last * step, was[0] + kept[2] if turns else None)
     return arrays, offset
 
 

@@ -9,14 +9,14 @@ import numpy as np
 import xarray as xr
 
 from .._kernels.layout import COLUMNS, ENERGIES
-from ..bodies import is_track
-from ..bodies.ordinary import of_ordinary_size
 from ..checks import ArgumentError, at_least, at_most, instance, positive
 from ..lowering import Assembly, assemble
 from ..lowering.schemes import CentralDifference, ExactModal, Scheme
 from ..lowering.stepping import Stepping
-from ..records import Acceleration, Probe
+from ..ordinary import of_ordinary_size
+from ..records import Probe
 from ..records.by_surface import groups
+from ..records.probes import usual_probes
 from ..system import System
 from .bars import time_shown
 from .contact_solve import GaussSeidel
@@ -172,7 +172,7 @@ class Asked:
     def arrays(self, system: System) -> Arrays:
         """Return a system as flat arrays."""
         instance("system", system, System)
-        probes = _usual_probes(system) if self.probes is None else tuple(self.probes)
+        probes = usual_probes(system) if self.probes is None else tuple(self.probes)
         for number, probe in enumerate(probes):
             instance(f"probes[{number}]", probe, Probe.__args__)
         return Arrays(system, probes, assemble(system, probes))
@@ -268,10 +268,3 @@ def _sampled(step: float, ratio: int, duration: float) -> Timing:
     if duration < 0.5 * interval:
         raise ArgumentError("duration", f"be at least half a sample interval of {at_least(interval)} s", duration)
     return Timing(step, ratio, max(1, round(duration / interval)))
-
-
-def _usual_probes(system: System) -> tuple[Probe, ...]:
-    """Return the default probes of a run: the acceleration in the middle of its track, along its normal."""
-    if not is_track(system.track):
-        return ()
-    return (Acceleration(system.track.centre, "transverse" if system.track.is_spatial else "y"),)

@@ -12,8 +12,6 @@ from .._kernels.contact import SEPARATED, SLIDING, STICKING
 from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
 from ..arrays import Array
 from ..checks import ArgumentError
-from ..contact import FrictionLaw
-from ..contact.stiffness import stored_at, tangent_of
 from ..lowering import Assembly, ContactRows
 from ..lowering.blocks import Blocks
 from ..lowering.schemes import Scheme
@@ -62,9 +60,7 @@ def stored_in_contacts(arrays: Assembly, carried: Array) -> float:
     """Return the energy stored in compliant contacts half a step before the start [J]."""
     energy = 0.0
     for one, own in zip(arrays.contacts, carried, strict=True):
-        if one.contact.yields is not None and not one.is_second:
-            gaps = own[[at.LAST_GAP, at.EARLIER_GAP]].tolist()
-            energy += sum(0.5 * stored_at(one.contact.yields, -gap) for gap in gaps)
+        energy += sum(0.5 * one.stored(gap) for gap in own[[at.LAST_GAP, at.EARLIER_GAP]].tolist())
     return energy
 
 
@@ -162,7 +158,7 @@ class _Start:
                 carried[i, at.FRICTION_STATE] = self._bristles_before(int(self.first[i]))[i - self.first[i]]
             elif not one.is_second:
                 speed = float(self.slip_speeds[i] if one.contact.is_spatial else self.speeds[i])
-                carried[i, at.FRICTION_STATE] = self._state_before(i, one.contact.friction, speed)
+                carried[i, at.FRICTION_STATE] = self._state_before(i, one, speed)
         carried[:, at.ANCHOR], carried[:, at.LAST_GAP] = carried[:, at.MATERIAL], self.gaps
         carried[:, at.EARLIER_GAP] = self.gaps - self.rows[self.first, 0] @ first - self.before[self.first, 2]
         carried[:, at.ABSCISSA_BEFORE] = carried[:, at.ABSCISSA] - self.travels @ first - tip
@@ -177,8 +173,9 @@ class _Start:
         after = next_bristles_of_run(self.contacts.laws, number, float(SLIDING), states, speeds, self.step / 2.0)
         return np.asarray(2.0 * np.array(states) - np.array(after))
 
-    def _state_before(self, i: int, law: FrictionLaw, velocity: float) -> float:
+    def _state_before(self, i: int, one: ContactRows, velocity: float) -> float:
         """Return the internal state of a law half a step before the start, as the march has it between the steps."""
+        law = one.contact.friction
         if not law.has_state:
             return 0.0
         state = float(self.arrays.friction_state[i])
@@ -199,11 +196,9 @@ class _Start:
         gap, slip = gap + self.rows[:, 0] @ around, slip + self.rows[:, 1] @ beyond
         compliance = self._compliance(self.pushes(closed))
         for k, i in enumerate(closed):
-            one = self.arrays.contacts[i]
-            if one.contact.yields is not None and not one.is_second:
-                give, further = tangent_of(one.contact.yields, -float(self.gaps[i]))
-                compliance[2 * k, 2 * k] += give
-                gap[i] += further
+            give, further = self.arrays.contacts[i].tangent(float(self.gaps[i]))
+            compliance[2 * k, 2 * k] += give
+            gap[i] += further
         codes, laws = self.contacts.codes[closed], self.contacts.laws[closed]
         ratios = self._known_ratios(carried)[closed]
         for i in np.flatnonzero(np.isfinite(ratios)):
@@ -250,7 +245,8 @@ class _Start:
     def _compliance(self, pushes: Array) -> Array:
         """Return the displacements of rows after the first step for constant unit forces on them."""
         still = np.zeros(self.arrays.mode_count)
-        increments = [self.stepping.first_increment(self.step, still, still, push) for push in pushes]
+        none = np.zeros_like(pushes)
+        increments = self.stepping.first_increment(self.step, none, none, pushes)
         answers = [
             self.modes.free(still, first) + self.modes.mobility(push)
             for push, first in zip(pushes, increments, strict=True)

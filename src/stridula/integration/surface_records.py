@@ -9,9 +9,9 @@ import xarray as xr
 
 from .._kernels import layout as at
 from ..arrays import Array
-from ..contact.resultants import AXES, RESULTANTS, resultants
 from ..records.by_surface import groups
 from ..records.dataset import OVER_TIME
+from ..records.resultants import AXES, RESULTANTS, resultants
 from ..records.variables import STATUS, STATUS_SHARE, attributes_of, described, dominant_status, status_attributes
 from ..system import System
 from .point_records import PointRecord

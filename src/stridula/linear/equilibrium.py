@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from scipy.linalg.lapack import dgetrf, dgetrs
 
 from ..arrays import Array
 from ..checks import ArgumentError
@@ -253,19 +254,34 @@ class _Equations:
         rows = self.parts[1] + np.arange(len(self.closed))
         matrix[rows, rows] = 0.0 if give is None else give[self.closed]
         self.scale = np.sqrt(np.maximum(np.abs(np.diag(matrix)), 1.0))
-        self.matrix = matrix / np.outer(self.scale, self.scale)
-        self.determinant = float(np.linalg.slogdet(self.matrix)[0])
+        self._factors = _Factors(matrix / np.outer(self.scale, self.scale))
+        self.determinant = self._factors.sign
 
     def solved(self, load: Array, closed: Array, stuck: Array) -> list[Array]:
         """Return displacement, accelerations of free motions and forces for a load and given values of constraints."""
         free, lateral = np.zeros(self.parts[1] - self.parts[0]), np.zeros(len(self.lateral))
         right = np.concatenate([load, free, closed, stuck, lateral])
         if self.determinant:
-            found = np.linalg.solve(self.matrix, right / self.scale) / self.scale
+            found = self._factors.solved(right / self.scale) / self.scale
         else:
             found = np.full(right.size, np.nan)
         first, second = self.parts
         return [found[:first], found[first:second], found[second:]]
+
+
+class _Factors:
+    """The LU factors of a square matrix, and the sign of its determinant, 0 if it is singular."""
+
+    def __init__(self, matrix: Array) -> None:
+        self._factors: Array
+        self._pivots: Array
+        self._factors, self._pivots, _ = dgetrf(matrix) if matrix.size else (matrix, np.zeros(0, np.int32), 0)
+        swaps = int(np.count_nonzero(self._pivots != np.arange(len(matrix))))
+        self.sign = float(np.prod(np.sign(np.diag(self._factors))) * (-1.0) ** swaps)
+
+    def solved(self, right: Array) -> Array:
+        """Return the solution for a right-hand side, of a matrix that is not singular."""
+        return np.asarray(dgetrs(self._factors, self._pivots, right)[0]) if right.size else right
 
 
 def travelling(structure: Structure, at: Equilibrium, speed: Array) -> Array:
@@ -347,16 +363,14 @@ def _check_held(structure: Structure, held: Array, contacts: Sequence[int]) -> N
     for size, contact in zip(sizes, contacts, strict=True):
         if size == 0.0:
             name = structure.system.contact_names[contact]
-            raise ArgumentError(
-                "contact", "be between points that move", got=f"{name} where neither moves as it is held"
-            )
+            raise ArgumentError("contact", "be between points that move", got=f"{name}, whose points are both held")
     if len(held) and _rank_is_short(held):
         names = ", ".join(dict.fromkeys(structure.system.contact_names[contact] for contact in contacts))
         raise ArgumentError(
             "contacts",
-            "not hold the same motion twice, so that forces are not determined",
+            "not hold the same motion twice, which leaves forces undetermined",
             contacts,
-            got=f"{names}; elastic bodies or another status settle it",
+            got=f"{names}; use elastic bodies or another status",
         )
 
 

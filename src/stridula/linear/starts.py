@@ -27,7 +27,7 @@ ROUND_OFF = 1e-9
 WAYS_OUT = {
     HELD: "is held by friction: status='sticking' starts it so, another velocity or a larger push lets it slide",
     LIFTED_OFF: "is lifted off: press it down, or status='separated' starts it open",
-    JAMMED: "is jammed, neither slides on nor opens: take less friction or another angle",
+    JAMMED: "is jammed, can neither slide nor open: reduce friction or change the angle",
 }
 
 
@@ -106,7 +106,7 @@ def _settled(whole: Structure, velocity: Array, status: Sequence[str] | None) ->
         if not np.isfinite(shift).all() or (np.abs(shift - before) <= SETTLED * (np.abs(places) + np.abs(shift))).all():
             return structure, found
         structure = whole.shifted(shift)
-    raise ArgumentError("drives", "bend the track by less: its contact points find no place in equilibrium")
+    raise ArgumentError("drives", "bend the track less: no equilibrium of its contact points was found")
 
 
 def _check(structure: Structure, at: Equilibrium, status: Sequence[str] | None) -> None:

@@ -45,7 +45,7 @@ class Vibration:
     by_state, from_velocity, from_displacement : ndarray, shape (modes, states), (states, modes) twice
         Modal forces of states, and rates of states by motion.
     state : ndarray, shape (states,)
-        Rate of each state by itself [1/s].
+        Rate of each state due to itself [1/s].
     owners : tuple of (int, bool)
         Contact of each state, and whether the state is the one across the slip.
     free : ndarray, shape (modes, motions)

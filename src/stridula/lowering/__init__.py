@@ -1,6 +1,6 @@
 """Descriptions lowered to flat arrays: modes, contact rows, loads and probes, then blocks under a time scheme."""
 
-from .assembly import Assembly, assemble, going_on, with_travel
+from .assembly import Assembly, assemble, with_motion_so_far, with_travel
 from .contact_rows import ContactRows
 from .coordinates import without_massless_coupling
 from .motion import Prescribed, Signal
@@ -15,7 +15,7 @@ __all__ = [
     "Signal",
     "TurningModes",
     "assemble",
-    "going_on",
+    "with_motion_so_far",
     "with_travel",
     "without_massless_coupling",
 ]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array
-from ..bodies.ordinary import of_ordinary_size
+from ..ordinary import of_ordinary_size
 from ..records.probes import Probe
 from ..system import System
 from .contact_rows import ContactRows, contact_rows
@@ -165,7 +165,7 @@ def with_travel(arrays: Assembly, system: System, travel: float) -> Assembly:
     return replace(arrays, signals=signals, motion=motion_of(system, displacement))
 
 
-def going_on(arrays: Assembly, offset: Array, start: float, before: Array | None = None) -> Assembly:
+def with_motion_so_far(arrays: Assembly, offset: Array, start: float, before: Array | None = None) -> Assembly:
     """Return a system whose contacts have already moved in addition to their imposed motion.
 
     Parameters

@@ -204,15 +204,15 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
             constants[i, [at.ALONG, at.ALONG_PHASE]] = one.rate, -one.rate * one.contact.at
         codes[i], laws[i] = _law(one.contact.friction)
         constants[i, at.AT_REST] = laws[i, 0]
-        if one.contact.yields is not None and not one.is_second:
-            constants[i, at.YIELD_STIFFNESS :] = one.contact.yields.numbers
+        if one.yields is not None:
+            constants[i, at.YIELD_STIFFNESS :] = one.yields.numbers
         if one.is_second:
             codes[i] = at.SECOND_TANGENT
         elif not one.fixed[0].any() and along is None:
             raise ArgumentError(
                 f"contact {one.contact.name or i + 1}",
-                "be between bodies of which one moves along its normal",
-                got="a tip that does not",
+                "have a tip or a track that moves along its normal",
+                got="neither",
             )
     constant = rows.copy()
     circles = np.full(count, -1, dtype=np.int64)

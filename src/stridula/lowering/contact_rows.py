@@ -7,9 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..contact import PointContact
+from ..contact import LAWS, PointContact
+from ..contact.stiffness import ContactStiffness, stored_at, tangent_of
 from .coordinates import Coordinates
 from .turning_modes import TurningModes
+
+# Laws with an internal state, which cannot be transferred to another law.
+STATEFUL = tuple(law.law for law in LAWS if law.state_units)
 
 
 @dataclass(frozen=True)
@@ -71,6 +75,19 @@ class ContactRows:
     def at(self) -> float:
         """Abscissa along the tangent at the start [m]."""
         return 0.0 if self.is_second else self.contact.at
+
+    @property
+    def yields(self) -> ContactStiffness | None:
+        """Stiffness of the contact along the normal, None if it is rigid and for the second tangent."""
+        return None if self.is_second else self.contact.yields
+
+    def stored(self, gap: float) -> float:
+        """Return the energy stored in a compliant contact at a gap, negative where it is indented [J]."""
+        return 0.0 if self.yields is None else stored_at(self.yields, -gap)
+
+    def tangent(self, gap: float) -> tuple[float, float]:
+        """Return the compliance [m/N] at a gap and the offset [m] of the tangent, as in `tangent_of`; 0 if rigid."""
+        return (0.0, 0.0) if self.yields is None else tangent_of(self.yields, -gap)
 
     @property
     def gap(self) -> float:

@@ -11,9 +11,9 @@ import numpy as np
 from ..arrays import Array
 from ..bodies import BodyPoint
 from ..bodies.modes import Modes
-from ..bodies.ordinary import check_coupled_count
 from ..connections import ends, unit
 from ..contact import PointContact
+from ..ordinary import check_coupled_count
 from ..system import System
 
 # Relative size of off-diagonal terms below which modes are not coupled.

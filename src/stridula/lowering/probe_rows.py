@@ -29,7 +29,7 @@ class ProbeRows:
     contact : ndarray, shape (contacts, 2)
         Shares of the normal and of the tangential force of each contact.
     is_of_body : bool
-        Whether it is one of those of all modes of a body.
+        Whether it is from a probe of all modes of a body.
     """
 
     rows: Array
@@ -39,7 +39,7 @@ class ProbeRows:
 
 
 def probe_rows(probe: Probe, coordinates: Coordinates, loads: list[Load]) -> list[ProbeRows]:
-    """Return the rows of a probe, of one of all modes for each of them, checked against the system."""
+    """Return the rows of a probe, several for one of all modes, checked against the system."""
     if not isinstance(probe, Reaction) and probe.body not in coordinates.system.bodies:
         raise ArgumentError("probe", "be on a body of this system", probe, got=f"one on {brief(probe.body)}")
     nothing = np.zeros(len(loads) + 3), np.zeros((coordinates.pairs, 2))
@@ -84,9 +84,9 @@ def _reaction_rows(
     if beam.tip_support != "free":
         raise ArgumentError("tip_support", "be free where a Reaction is recorded", beam.tip_support)
     if any(point.body == beam for connection in system.connections for point in ends(connection)):
-        raise ArgumentError("connections", "leave a body whose Reaction is recorded", got=f"one on {brief(beam)}")
+        raise ArgumentError("connections", "not join a body whose Reaction is recorded", got=f"one on {brief(beam)}")
     if system.is_spatial:
-        raise ArgumentError("probe", "be another than a Reaction in a system with bodies in space", probe)
+        raise ArgumentError("probe", "not be a Reaction in a system with bodies in space", probe)
     reaction = beam.root_reaction(system.is_held(beam))
     matrix = np.zeros((3, coordinates.size))
     matrix[2] = coordinates.blended(coordinates.full(beam, reaction.mass[component]))

@@ -78,7 +78,7 @@ class Scheme(Protocol):
     def coupled_first_increment(
         self, stiffness: Array, damping: Array, step: float, position: Array, velocity: Array, force: Array
     ) -> Array:
-        """Return the first increment of coupled modes."""
+        """Return the first increment of coupled modes, of one motion (modes,) or several, (motions, modes)."""
         ...
 
 
@@ -221,7 +221,7 @@ class ExactModal:
             return _centred_start(k, step, position, velocity, force)
         size = len(stiffness)
         back = _transition(stiffness, damping, -step)[:size]
-        return position - back @ np.concatenate([position, velocity, force])
+        return np.asarray(position - (back @ np.concatenate([position, velocity, force], axis=-1).T).T)
 
 
 def _damped(angular: Array, rate: Array) -> Array:
@@ -237,7 +237,8 @@ def _centred(k: Coefficients, step: float, position: Array, velocity: Array, for
 
 def _centred_start(k: Coefficients, step: float, position: Array, velocity: Array, force: Array) -> Array:
     """Return the increment before the start for a centred velocity of `velocity` there, for coupled modes."""
-    return np.linalg.solve(np.eye(len(k.b)) + k.b, 2.0 * step * velocity + k.r @ position - k.load @ force)
+    right = 2.0 * step * velocity.T + k.r @ position.T - k.load @ force.T
+    return np.asarray(np.linalg.solve(np.eye(len(k.b)) + k.b, right).T)
 
 
 def _angular(stiffness: Array) -> Array:

@@ -59,16 +59,19 @@ class Stepping:
         return Coefficients(b, r, load)
 
     def first_increment(self, step: float, position: Array, velocity: Array, force: Array) -> Array:
-        """Return ``q[0] - q[-1]`` of motion that passes `position` with `velocity` under a constant `force`."""
+        """Return ``q[0] - q[-1]`` of motion that passes `position` with `velocity` under a constant `force`.
+
+        All have the shape (modes,), or (motions, modes).
+        """
         arrays, moving, size = self.arrays, self._moving, self.arrays.coupled
         found = step * velocity
-        motion = [one[moving] for one in (position, velocity, force)]
-        found[moving] = self.scheme.first_increment(*self._alone, step, *motion)
+        motion = [one[..., moving] for one in (position, velocity, force)]
+        found[..., moving] = self.scheme.first_increment(*self._alone, step, *motion)
         if size:
             inside = moving[:size]
             parts = _part(arrays.stiffness, inside), _part(arrays.dissipation, inside)
-            motion = [one[:size][inside] for one in (position, velocity, force)]
-            found[:size][inside] = self.scheme.coupled_first_increment(*parts, step, *motion)
+            motion = [one[..., :size][..., inside] for one in (position, velocity, force)]
+            found[..., :size][..., inside] = self.scheme.coupled_first_increment(*parts, step, *motion)
         return np.asarray(found)
 
     @property

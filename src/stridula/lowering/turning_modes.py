@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import Array
 from ..bodies.turning import Turning
 from ..checks import ArgumentError
+from ..histories import Constant
 from .coordinates import Coordinates
 
 
@@ -33,6 +34,11 @@ class TurningModes:
     pairs: Array
     span: tuple[int, int] = (0, 0)
     has_circle: bool = False
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether the body turns at a constant velocity."""
+        return type(self.turning.history) is Constant
 
     @property
     def orders(self) -> Array:
@@ -73,7 +79,7 @@ def _check_round(coordinates: Coordinates, body: Any, turning: Any) -> None:
     if not turning.pairs:
         raise ArgumentError("track", f"have waves round its axis: {name} has none below its cutoff", got="a circle")
     if body in coordinates.joined and len(coordinates.blend):
-        words = f"leave {name}, round which a contact moves, where joined bodies have residual shapes"
+        words = f"not join {name}, round which a contact moves, if joined bodies have residual shapes"
         raise ArgumentError("connections", words, got="one to it")
     first, second = np.array(turning.pairs).T
     if (modes.damping_rate[first] != modes.damping_rate[second]).any():

@@ -166,7 +166,7 @@ def _of_array(signals: xr.DataArray, pieces: int) -> tuple[dict[Any, xr.DataArra
         whole = signals.squeeze([name for name in signals.dims if name != "time"])
         size = whole.sizes["time"] // pieces
         if size < FEWEST:
-            words = f"leave at least {FEWEST} samples in each stretch"
+            words = f"leave at least {FEWEST} samples in each section"
             raise ArgumentError("pieces", words, pieces, got=f"{pieces} of {whole.sizes['time']} samples")
         parts = [whole.isel(time=slice(k * size, (k + 1) * size)) for k in range(pieces)]
         return {float(one["time"].mean()): one for one in parts}, "time [s]"

@@ -56,10 +56,10 @@ def _check_same(run: xr.Dataset, what: str, part: Callable[[dict[str, Any]], Any
         if other != first:
             raise ArgumentError(
                 "run",
-                f"have the same {what} all the time to be heard",
+                f"have the same {what} throughout to be heard",
                 run,
                 got=(
-                    f"another one from {time:.6g} s on: choose the times of one with run.sel(time=slice(START, "
+                    f"another one from {time:.6g} s on: select the times of one with run.sel(time=slice(START, "
                     f"STOP)), and give its {what}"
                 ),
             )

@@ -74,7 +74,7 @@ def check_times(name: str, times: xr.DataArray) -> None:
             name, "have a time of each sample in s", got=f"{times.dtype} over {listed(map(str, times.dims))}"
         )
     if not (np.abs(values) < LATEST).all() or (values[1:] <= values[:-1]).any():
-        raise ArgumentError(name, "have finite times that rise", got="others")
+        raise ArgumentError(name, "have finite, increasing times", got="others")
 
 
 def check_real(name: str, word: str, variable: xr.DataArray) -> None:

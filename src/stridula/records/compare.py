@@ -60,7 +60,7 @@ def compare(a: xr.Dataset, b: xr.Dataset, tolerance: float = 1e-6) -> xr.Dataset
     theirs = {column.name: column for column in columns(second) if column.variable not in LEFT_OUT}
     names = [name for name in ours if name in theirs]
     if not names:
-        raise ArgumentError("b", "have a variable of a", b, got=listed(theirs))
+        raise ArgumentError("b", "have a variable in common with a", b, got=listed(theirs))
     scales = _scales(ours)
     time = first["time"].values
     rows = [_difference(ours[name], theirs[name], scales[name], time, tolerance) for name in names]
@@ -69,7 +69,7 @@ def compare(a: xr.Dataset, b: xr.Dataset, tolerance: float = 1e-6) -> xr.Dataset
     result["units"] = ("variable", [ours[name].units for name in names])
     result["difference"] = ("variable", difference, {"long_name": "largest difference"})
     result["relative_difference"] = ("variable", relative, described("1", "relative to a's largest"))
-    result["first_time"] = ("variable", since, described("s", "when it is first above the tolerance"))
+    result["first_time"] = ("variable", since, described("s", "first time above the tolerance"))
     for word, measure in (("mean", np.nanmean), ("rms", _rms)):
         values = [[_statistic(measure, side[name].values) for side in (ours, theirs)] for name in names]
         result[word] = (("variable", "record"), np.array(values))
@@ -106,7 +106,7 @@ def _common(a: xr.Dataset, b: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
     _, ours, theirs = np.intersect1d(numbers[0], numbers[1], return_indices=True)
     if ours.size == 0:
         spans = [f"{r['time'].values[0]:.6g} to {r['time'].values[-1]:.6g} s" for r in (a, b)]
-        raise ArgumentError("b", f"have a time of a, {spans[0]}", b, got=spans[1])
+        raise ArgumentError("b", f"overlap a in time, {spans[0]}", b, got=spans[1])
     return a.isel(time=ours), b.isel(time=theirs)
 
 

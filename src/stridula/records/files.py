@@ -49,7 +49,7 @@ def save(run: xr.Dataset, path: str | Path) -> None:
             content = plain.to_netcdf(engine="h5netcdf", encoding=encoding)
         except (TypeError, ValueError, NotImplementedError, CompatibilityError) as error:
             raise ArgumentError(
-                "run", "hold what NetCDF can keep", run, got=f"other things: {in_one_line(error)}"
+                "run", "hold only values that NetCDF can store", run, got=f"others: {in_one_line(error)}"
             ) from error
     write(path, content)
 
@@ -141,5 +141,5 @@ def _readable(path: str | Path) -> Iterator[None]:
         yield
     except (OSError, RuntimeError, KeyError, ValueError) as error:
         raise ArgumentError(
-            "path", "be a whole record", path, got=f"the damaged {named(path)}: {in_one_line(error)}"
+            "path", "be a complete record", path, got=f"the damaged {named(path)}: {in_one_line(error)}"
         ) from error

@@ -1,4 +1,4 @@
-"""The low-pass through which probes go from every step to every sample."""
+"""Low-pass from the steps of a march to the samples of probes."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ KAISER = 6.2
 
 
 def reach_of(steps: int) -> int:
-    """Return from how many steps on each side a sample of so many steps is made."""
+    """Return the number of steps on each side that contribute to a sample of `steps` steps."""
     return HALF_SPAN * steps if steps > 1 else 0
 
 
 @lru_cache(maxsize=32)
 def taps_of(steps: int) -> Array:
-    """Return the filter of samples of so many steps: a sinc under a Kaiser window, shape (2 reach + 1,)."""
+    """Return the filter for samples of `steps` steps: a Kaiser-windowed sinc, shape (2 reach + 1,)."""
     if steps == 1:
         return np.ones(1)
     reach = reach_of(steps)
@@ -30,6 +30,6 @@ def taps_of(steps: int) -> Array:
 
 
 def gain(frequency: Array, steps: int) -> Array:
-    """Return what the low-pass leaves at frequencies over the sample rate, which has no delay."""
+    """Return the gain of the low-pass, which has no delay, at frequencies over the sample rate."""
     reach = reach_of(steps)
     return np.asarray(np.cos(2.0 * np.pi * np.outer(frequency, np.arange(-reach, reach + 1) / steps)) @ taps_of(steps))

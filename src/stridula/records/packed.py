@@ -52,4 +52,4 @@ def unpacked(text: str) -> Array:
         plain = unfold.decompress(base64.b64decode(content, validate=True), whole + 1)
         return np.frombuffer(plain, dtype=numbers).astype(float).reshape(shape)
     except (KeyError, ValueError, zlib.error, binascii.Error) as error:
-        raise ArgumentError("array", "be a whole packed array, as records have them") from error
+        raise ArgumentError("array", "be a complete packed array, as in records") from error

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from ..arrays import Array
-from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam
+from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, is_track
 from ..bodies.modes import Body
 from ..checks import ArgumentError, choice, count, instance
 from ..declared import Way, check_declared
+from ..system import System
 
 DIRECTION = Way(("x", "y", "z", "axial", "transverse"))
 
@@ -28,7 +29,7 @@ class _Motion:
         instance("point", self.point, BodyPoint)
         check_declared(self)
         if self.along[2] and not self.point.body.is_spatial:
-            words = "be another than z" if self.direction == "z" else "have nothing along z"
+            words = "not be z" if self.direction == "z" else "have no component along z"
             raise ArgumentError("direction", f"{words} on a body in the plane", self.direction)
 
     @property
@@ -43,7 +44,7 @@ class _Motion:
 
     @property
     def place(self) -> str:
-        """Place on its body and direction, in words."""
+        """Place on its body and direction, as text."""
         is_word = isinstance(self.direction, str)
         way = self.direction if is_word else f"({', '.join(f'{one:.6g}' for one in self.direction)})"
         return f"{_words(self.point)} {way}"
@@ -129,7 +130,7 @@ class Reaction:
 
     @property
     def place(self) -> str:
-        """Place on its body and direction, in words."""
+        """Place on its body and direction, as text."""
         return f"root {self.component}"
 
     @property
@@ -167,7 +168,7 @@ class SupportForce:
 
     @property
     def place(self) -> str:
-        """Place on its body, in words."""
+        """Place on its body, as text."""
         return f"{self.end} end"
 
     @property
@@ -190,7 +191,7 @@ class _OfMode:
 
     @property
     def place(self) -> str:
-        """Mode of its body, in words."""
+        """Mode of its body, as text."""
         return f"mode {self.mode}"
 
     @property
@@ -200,7 +201,7 @@ class _OfMode:
 
 
 class ModalDisplacement(_OfMode):
-    """Displacement of a mode of a body [kg^(1/2) m]; times the mode shape it is its share in all displacements.
+    """Displacement of a mode of a body [kg^(1/2) m]; times the mode shape it is the part of the mode in displacements.
 
     Parameters
     ----------
@@ -231,7 +232,7 @@ class ModalVelocity(_OfMode):
 
 @dataclass(frozen=True)
 class ModalMotion:
-    """Velocities of all modes of a body [kg^(1/2) m/s], in single precision: what `radiate` makes its sound of.
+    """Velocities of all modes of a body [kg^(1/2) m/s], in single precision, from which `radiate` computes sound.
 
     Centred differences over two steps.
 
@@ -250,11 +251,11 @@ class ModalMotion:
 
     @property
     def keys(self) -> dict[str, Any]:
-        """What a scenario says of it, beside quantity and body."""
+        """Keys of it in a scenario, besides quantity and body."""
         return {}
 
     def of_each(self, modes: int) -> list[ModalVelocity]:
-        """Return a probe of each of its body's modes."""
+        """Return a probe for each mode of its body."""
         return [ModalVelocity(self.body, mode) for mode in range(modes)]
 
 
@@ -275,3 +276,10 @@ def _words(point: BodyPoint) -> str:
     if isinstance(point.position, tuple):
         return f"({', '.join(f'{one:.6g}' for one in point.position)}) m"
     return f"{point.position:.6g} m"
+
+
+def usual_probes(system: System) -> tuple[Probe, ...]:
+    """Return the default probes of a run: the acceleration in the middle of its track, along its normal."""
+    if not is_track(system.track):
+        return ()
+    return (Acceleration(system.track.centre, "transverse" if system.track.is_spatial else "y"),)

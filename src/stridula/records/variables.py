@@ -89,7 +89,7 @@ PROBES = {
     "modal_motion": Variable("modal_motion", "kg^(1/2) m/s", "velocities of all modes of bodies", "low-pass"),
     "support_force": Variable("support_force", "N", "force along y on the supports of the ends", "low-pass"),
 }
-# Of the equilibrium of linear theory, without free rigid motions.
+# Variables of the equilibrium of linear theory, without free rigid motions.
 EQUILIBRIUM = {
     "modal": Variable("modal_displacement", "kg^(1/2) m", "modal displacements, in the order of mode_shape"),
     "tip": Variable("tip_displacement", "m", "displacement of the tip along world x and y"),

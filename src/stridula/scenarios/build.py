@@ -29,7 +29,6 @@ from ..bodies import (
 from ..bodies.body_surfaces import surface_of
 from ..bodies.damping import DAMPING_LAWS
 from ..bodies.drawn_surfaces import drawn_of
-from ..bodies.ordinary import NotOrdinary
 from ..bodies.sections import SECTIONS
 from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, listed, suggestion
@@ -37,6 +36,7 @@ from ..contact import LAWS, STIFFNESSES, PointContact, RigidTrack, SurfaceContac
 from ..disk import is_there
 from ..drives import Drive
 from ..integration import GaussSeidel
+from ..ordinary import NotOrdinary
 from ..records import (
     Acceleration,
     Displacement,

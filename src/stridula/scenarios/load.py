@@ -11,9 +11,9 @@ from typing import Any
 import xarray as xr
 from pydantic import ValidationError
 
-from ..bodies.ordinary import NotOrdinary
 from ..checks import ArgumentError, by_key
 from ..integration import SCHEMES, CentralDifference, ExactModal, GaussSeidel, simulate
+from ..ordinary import NotOrdinary
 from ..records import Probe
 from ..records.provenance import body_table, mesh_tables
 from ..system import System

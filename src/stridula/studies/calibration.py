@@ -81,7 +81,10 @@ class Target:
                 finite(name, value)
         if self.low > self.high or (math.isinf(self.low) and math.isinf(self.high)):
             raise ArgumentError(
-                "low and high", "be a range with an end", self.low, got=f"{brief(self.low)} and {brief(self.high)}"
+                "low and high",
+                "be bounds in order, at least one of them finite",
+                self.low,
+                got=f"{brief(self.low)} and {brief(self.high)}",
             )
         if self.scale is not None:
             positive("scale", self.scale)
@@ -327,7 +330,7 @@ def _sweeping(
         found = sweep(scenario, points, asked, **options)
         if (found["message"].values != "").all() and not evaluated:
             example = found["message"].values[0]
-            raise ArgumentError("ranges", "hold sets that can be run", got=f"{len(points)} that cannot: {example}")
+            raise ArgumentError("ranges", "contain sets that can be run", got=f"{len(points)} that cannot: {example}")
         evaluated.append(len(points))
         return [{name: found[name].values[k] for name in shown} for k in range(len(points))]
 
@@ -339,7 +342,9 @@ def _check_target(name: str, target: Target | str, functions: Sequence[str]) -> 
     """Raise ValueError if a target is of an unknown measure, or a word for a number or the reverse."""
     known = [*functions, *COLUMNS]
     if name not in COLUMNS:
-        raise ArgumentError("targets", f"be of {', '.join(known)}", name, got=f"{brief(name)}{suggestion(name, known)}")
+        raise ArgumentError(
+            "targets", f"be among {', '.join(known)}", name, got=f"{brief(name)}{suggestion(name, known)}"
+        )
     if isinstance(target, str) and name in WORDS:
         choice(f"target of {name}", target, WORDS[name])
     elif COLUMNS[name].is_text != isinstance(target, str):

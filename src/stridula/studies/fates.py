@@ -111,7 +111,7 @@ class Runs:
         if reach == 0.0:
             raise ArgumentError("velocity", "be given: a contact is about to stick, slip, open or land at the start")
         if not np.isfinite(reach):
-            raise ArgumentError("mode", "move a contact point to be followed", got=f"{number}, which moves none")
+            raise ArgumentError("mode", "move a contact point to be simulated", got=f"{number}, which moves none")
         start = replace(self.start, mode=number, amplitude=self.options.amplitude * reach)
         given, longest = self.options.duration, self.options.longest
         run = self._simulate(start, given or min(longest, self._time(number)))

@@ -70,7 +70,7 @@ class Parts:
         if not self.folder.exists():
             return
         if not self.folder.is_dir():
-            raise ArgumentError(f"{str(self.folder)!r}", f"be left for the parts of the {self.study}", got="a file")
+            raise ArgumentError(f"{str(self.folder)!r}", f"be free for the parts of the {self.study}", got="a file")
         known = self._identity_on_disk()
         if known is None and all(path.name.startswith(".stridula-") for path in self.folder.iterdir()):
             # Stopped before the description was written.

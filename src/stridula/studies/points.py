@@ -16,7 +16,7 @@ from ..checks import ArgumentError, brief, count, finite, listed
 from ..scenarios.quantities import parts
 
 POINT = "point"
-# Of one key.
+# Values of one key.
 Values = Sequence[Any] | Array
 MOST_POINTS = 1_000_000
 

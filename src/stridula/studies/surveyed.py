@@ -128,7 +128,7 @@ def surveyed(
             described(units, meaning),
         )
     at = places | {
-        "mode": ("mode", np.arange(count), {"long_name": "mode, followed from point to point"}),
+        "mode": ("mode", np.arange(count), {"long_name": "mode, tracked from point to point"}),
         "tone": ("tone", np.arange(MOST), {"long_name": "tone, the strongest first"}),
     }
     return xr.Dataset(data, at, attributes)

@@ -51,7 +51,7 @@ def _steps(mass: str, scheme: Scheme) -> list[float]:
 
 
 def _impact_rows(run: xr.Dataset, mass: str, scheme: Scheme, courant: float) -> list[Row]:
-    central = isinstance(scheme, CentralDifference)
+    central = scheme == CentralDifference()
     step, plateau = run.attrs["step"], WALL.plateau(VELOCITY)
     force = run["normal_force"].values
     own = force_of_scheme(WALL, mass, central, step, GAP, VELOCITY, DURATION)[: force.size]
@@ -161,7 +161,7 @@ def bouncing() -> Outcome:
 
 def _bounce_rows(run: xr.Dataset, mass: str, courant: float, scheme: Scheme) -> list[Row]:
     step, speed = run.attrs["step"], FALL * sqrt(2.0 * HEIGHT / FALL)
-    spread = front(BALL, courant, mass, isinstance(scheme, CentralDifference)) + BALL.step(1.0) + step
+    spread = front(BALL, courant, mass, scheme == CentralDifference()) + BALL.step(1.0) + step
     time, height = run["time"].values, HEIGHT + run["displacement"].values[:, 0]
     touching = run["normal_force"].values > 0.0
     touch, leave, land, lift = contacts()

@@ -1,4 +1,4 @@
-"""Sound of bodies in open air: spheres, thin disc and plates, a bar, the balance of power, and filters in time.
+"""Sound of bodies in open air: spheres, a thin disc, thin plates, a bar, the balance of power, filters in time.
 
 A sphere and a disc as bodies of revolution, by rings of sources; a sphere and a bar as meshes, by the pressure on their
 surface; plates as sheets of dipoles. Their motions are prescribed: shapes take the place of modes.
@@ -141,7 +141,7 @@ def bar() -> Outcome:
 
 
 def rigid_plate(length: float, width: float) -> SheetDipoles:
-    """Return a thin plate that moves as a whole."""
+    """Return a thin plate that moves as a rigid body."""
     waves = np.full((1, 2), 1e-9)
     panel = Panel(length, width, 0.0, 1.0, waves, np.ones(1), np.zeros(1), (0.0, length), lambda at: (at, at))
     sheet = sheet_of(panel, 0.0)

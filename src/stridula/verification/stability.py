@@ -95,7 +95,8 @@ def _seen(which: int, scheme: Scheme) -> tuple[complex, complex, float, Curve]:
     For bodies given by matrices the contact point is fixed, so that small motions are linear while they slide.
     """
     pair, friction = Pair(), 1.5
-    rod, beam = _matrices(pair.rod, "rod"), _matrices(pair.beam, "beam")
+    rod = _matrices(pair.rod, pair.rod.length, "rod")
+    beam = _matrices(pair.beam, pair.beam.length / 2.0, "beam")
     contact = PointContact(rod.at("0"), beam.at("1"), friction=Coulomb(friction))
     along = radians(pair.angle)
     push = Force(rod.at("1"), x=-PUSH * sin(along), y=-PUSH * cos(along))
@@ -147,11 +148,10 @@ def _rest(angular: Array, acts: Array, normal: Array, load: Array) -> tuple[Arra
     return solved[:size], free
 
 
-def _matrices(body: FiniteElementBeam | ModalBeam, name: str) -> ReducedBody:
-    """Return the modes of a body below 6 kHz as matrices, with its first and last point, or its left end and middle."""
+def _matrices(body: FiniteElementBeam | ModalBeam, place: float, name: str) -> ReducedBody:
+    """Return the modes of a body below 6 kHz as matrices, with its end as point 0 and a place along it as point 1."""
     kept = body.modes().angular_frequency <= 2.0 * pi * AUDIBLE
-    places = {"0": 0.0, "1": body.length if isinstance(body, FiniteElementBeam) else body.length / 2.0}
-    points = {word: body.trace(place)[:, kept] for word, place in places.items()}
+    points = {word: body.trace(at)[:, kept] for word, at in {"0": 0.0, "1": place}.items()}
     angular = body.modes().angular_frequency[kept]
     return ReducedBody(np.eye(angular.size), np.diag(angular**2), points, name=name)
 

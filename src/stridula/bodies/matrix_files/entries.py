@@ -143,7 +143,7 @@ def filled_in(
     twice = np.flatnonzero(np.diff(place) == 0)
     if twice.size:
         first, second = (called(int(k)) for k in divmod(int(place[twice[0]]), size))
-        raise ValueError(f"each entry must stand once (assembled matrices), got two at {first}, {second}")
+        raise ValueError(f"each entry must occur once (assembled matrices), got two at {first}, {second}")
     if _has_mirror_images(rows, columns, place, size):
         return rows, columns, values
     return with_mirror_images(rows, columns, values)

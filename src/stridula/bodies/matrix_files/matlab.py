@@ -109,7 +109,7 @@ def _unpacked(data: memoryview, order: str) -> memoryview:
     whole = zlib.decompressobj().decompress(data, LARGEST_VARIABLE)
     kind, variable, _ = _element(memoryview(whole), order, 0)
     if kind != VARIABLE:
-        raise ValueError("it holds something packed that is no variable")
+        raise ValueError("it contains a compressed element that is not a variable")
     return variable
 
 
@@ -152,7 +152,7 @@ def _sparse(name: str, shape: tuple[int, ...], parts: list[Array]) -> Any:
 
 def _values(kind: int, data: memoryview, order: str) -> Array:
     if kind not in NUMBERS:
-        raise ValueError(f"it holds numbers of a kind that is not known, {kind}")
+        raise ValueError(f"it contains numbers of an unknown kind, {kind}")
     of = np.dtype(order + NUMBERS[kind])
     if len(data) % of.itemsize:
         raise ValueError("it ends within a number")

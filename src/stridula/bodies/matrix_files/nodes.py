@@ -68,7 +68,7 @@ def read_nodes(path: PathLike) -> Nodes:
         numbers = np.array([number for number, _ in held], dtype=np.int64)
         places = np.array([place for _, place in held])
         if np.unique(numbers).size < numbers.size:
-            raise ValueError("each node must have another number")
+            raise ValueError("nodes must have different numbers")
         if not np.isfinite(places).all():
             raise ValueError("nodes must have finite coordinates")
         return Nodes(numbers, places)

@@ -292,7 +292,7 @@ class _Binary:
         record = self._file.read(length if most is None else min(most, length))
         self._file.seek(end)
         if self._length() != length:
-            raise ValueError("the length behind a record must be that before it")
+            raise ValueError("the lengths before and after a record must be equal")
         return record
 
     def _length(self) -> int:

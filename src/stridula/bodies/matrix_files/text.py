@@ -75,7 +75,7 @@ def table(lines: Iterable[str], layout: Layout, bad_line: Callable[[], str], mos
 def _columns(lines: list[str], layout: Layout) -> list[Array]:
     numbers = np.loadtxt(lines, delimiter=layout.comma, comments=layout.remark, ndmin=2)
     if numbers.shape[1] != layout.width or not _are_numbers(numbers[:, :-1]):
-        raise ValueError("it is no matrix")
+        raise ValueError("it is not a matrix")
     whole = numbers[:, :-1].T
     small = np.int32 if np.abs(whole).max(initial=0.0) < 2**31 else np.int64
     return [*whole.astype(small), numbers[:, -1].copy()]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import asinh, atan, cos, exp, hypot, log, pi, sin, sqrt
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import xarray as xr
@@ -174,13 +174,14 @@ class StickSlip:
 
 
 def stick_slip(slider: Slider) -> StickSlip:
-    """Return the cycle: from the static limit the mass swings about the kinetic one until it moves with the belt again.
+    """Return the cycle under `StaticKinetic` friction.
+
+    From the static limit the mass swings about the kinetic one until it moves with the belt again.
 
     With ``D = (mu_s - mu_k) N / k`` it leaves at ``x_k + D`` with the belt's velocity v, so its amplitude is
     ``sqrt(D² + (v/w)²)``, and it comes back to v at ``x_k - D``.
     """
-    law = slider.friction
-    assert isinstance(law, StaticKinetic)
+    law = cast(StaticKinetic, slider.friction)
     angular = sqrt(slider.stiffness / slider.mass)
     reach = (law.static - law.kinetic) * slider.normal / slider.stiffness
     middle = law.kinetic * slider.normal / slider.stiffness

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import ArgumentError
+from .checks import ArgumentError
 
 # A hundred times the modes of a track in the audible range: a step with so many takes a tenth of a millisecond.
 MOST_MODES = 50_000

@@ -1,4 +1,4 @@
-"""The page for a class and for a stranger: one view, instruments, two settings, the tour, by hand, recorded, shared."""
+"""Features of the page: one view, instruments, two settings, the tour, dragging, recording, sharing."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ PICTURES = ("beams", "timeline", "phase", "spectrogram", "map")
 
 
 def slide(page, key: str, value: float) -> None:
-    """Type a number as one does."""
+    """Type a number as a user does."""
     field = page.locator(f"input[type=number][data-key='{key}']")
     field.fill(str(value))
     field.press("Enter")
 
 
 def plays(page, key: str, value: float) -> None:
-    """Wait until a value is what the server plays."""
+    """Wait until the server plays a value."""
     until(page, "Math.abs(stridula.now()?.values[arg[0]] - arg[1]) < 1e-9", [key, value])
 
 
@@ -72,7 +72,7 @@ def test_a_phone_has_the_bodies_and_the_first_slider_in_one_view(chromium, serve
         slider = f"input[type=range][data-key='{FRICTION}']"
         for place in ("#now", "#play", "#sound", "#beams", slider, "#undo"):
             assert inside(page, place), place
-        # It goes along with the page, and can be put away.
+        # It scrolls with the page, and can be closed.
         page.evaluate("scrollTo(0, 900)")
         assert inside(page, slider)
         page.locator("#drawer").tap()
@@ -95,7 +95,7 @@ def test_instruments_are_one_group_of_pictures(browsing):
     page.locator("#instruments").click()
     cards = page.locator("#cards .card")
     assert cards.count() == len(CASES)
-    # Every case of the page has a picture of its own.
+    # Every case of the page has its own picture.
     pictures = {card.locator("svg").inner_html() for card in cards.all()}
     assert len(pictures) == len(CASES)
     assert page.locator("#cards input:checked").input_value() == "squeal"
@@ -143,7 +143,7 @@ def test_two_settings_are_compared_and_each_has_its_own_undo(browsing):
     page.keyboard.press("b")
     plays(page, FRICTION, 0.6)
     assert a.get_attribute("aria-pressed") == "true"
-    # The motion goes on, and the link holds what is heard.
+    # The motion continues, and the link has the present setting.
     assert page.evaluate("stridula.now().goes_on")
     until(page, "location.hash.includes('=0.6')")
     page.locator("#undo").click()
@@ -154,7 +154,7 @@ def test_two_settings_are_compared_and_each_has_its_own_undo(browsing):
     assert shown(page, FRICTION) == 0.9
     page.keyboard.press("Control+z")
     plays(page, FRICTION, 0.6)
-    # Where one writes or chooses, a letter is a letter.
+    # In text and selection fields letters are not shortcuts.
     page.locator("#case").focus()
     page.keyboard.press("b")
     assert b.get_attribute("aria-pressed") == "true"
@@ -190,7 +190,7 @@ def test_the_tour_goes_through_its_stops_by_keys(browsing):
     plays_on(page)
 
 
-def test_the_bodies_are_rubbed_by_hand_and_come_back(browsing):
+def test_bodies_are_dragged_by_hand_and_return(browsing):
     page = browsing.open("#case=weak-pressure")
     until(page, "document.getElementById('hand').textContent.startsWith('drag')")
     before = page.evaluate(NOW)
@@ -229,7 +229,7 @@ def test_the_bodies_are_rubbed_by_hand_and_come_back(browsing):
     until(page, "stridula.now().values[arg] > 2", LOAD)
 
 
-def test_what_sounds_is_recorded_from_press_to_press(browsing):
+def test_sound_is_recorded_between_two_presses(browsing):
     page = browsing.open("#case=strong-pressure")
     record = page.locator("#record")
     assert page.locator("#recording").is_hidden()
@@ -248,7 +248,7 @@ def test_what_sounds_is_recorded_from_press_to_press(browsing):
     assert np.abs(values).max() == pytest.approx(10.0 ** (-1.0 / 20.0), rel=1e-3)
     with soundfile.SoundFile(saved.value.path()) as file:
         assert file.comment.endswith(" Pa")
-    # Nothing is kept of slow motion.
+    # Slow motion is not recorded.
     page.locator("#speed").select_option("100")
     page.wait_for_timeout(300)
     record.click()
@@ -281,7 +281,7 @@ def test_the_note_is_named_where_there_is_a_tone(browsing):
     assert page.locator("#note").text_content() == ""
 
 
-def test_a_tip_that_sticks_has_words_in_place_of_a_portrait(browsing):
+def test_a_sticking_tip_shows_text_instead_of_a_portrait(browsing):
     browsing.context.add_init_script(WRITTEN)
     stick = STOPS[0]
     values = "&".join(f"{key}={value}" for key, value in stick.overrides.items())
@@ -292,7 +292,7 @@ def test_a_tip_that_sticks_has_words_in_place_of_a_portrait(browsing):
     assert [one for one in written if "NaN" in one or "undefined" in one] == []
 
 
-def test_what_is_silent_has_words_in_place_of_a_spectrogram(browsing):
+def test_silence_shows_text_instead_of_a_spectrogram(browsing):
     browsing.context.add_init_script(WRITTEN)
     page = browsing.open()
     draw = """(hears) => import('./spectrogram.js').then(({ Spectrogram }) => {
@@ -303,6 +303,6 @@ def test_what_is_silent_has_words_in_place_of_a_spectrogram(browsing):
     })"""
     assert page.evaluate(draw, False) == ["Slow motion is silent."]
     assert "frequency [kHz]" in page.evaluate(draw, True)
-    # What is computed slower than it sounds says how much, first of all.
+    # A system slower than real time states its speed first.
     page.evaluate("stridula.keepUp(0.1)")
     assert page.locator("#speed option:checked").text_content() == "Slow, 1 : 11, as fast as possible"

@@ -1,4 +1,4 @@
-"""A track and a law of friction of somebody else's, told to the package by nothing but what they are."""
+"""A track and a law of friction defined by a user, without registration in the package."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from stridula.contact import FrictionLaw
 
 @dataclass(frozen=True)
 class Cable:
-    """A taut cable that moves across itself: w_k = (k pi / L) c, shapes sin(k pi x / L)."""
+    """A taut cable with transverse motion: w_k = (k pi / L) c, shapes sin(k pi x / L)."""
 
     length: float
     mass: float
@@ -65,7 +65,7 @@ class Cable:
 
 @dataclass(frozen=True)
 class Halving(FrictionLaw):
-    """Friction that falls to its half with the speed of slip: in a form that the march has."""
+    """Friction that falls to its half with the slip speed, in a form known to the march."""
 
     coefficient: float
     velocity: float

@@ -1,4 +1,4 @@
-"""What may come of an input: it is accepted, or refused in one line."""
+"""Outcomes of an input: it is accepted, or refused in one line."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from typing import Any
 import stridula as st
 
 ACCEPTED, REFUSED = "accepted", "refused"
-# What the documentation says that is raised.
+# Documented exceptions.
 DOCUMENTED = (ValueError, TypeError, OSError, st.Diverged, st.Interrupted)
 LONGEST = 2000
-# How long a run that goes well is watched [s].
+# Wall time after which a run that succeeds is stopped [s].
 PATIENCE = 0.5
 
 
 class EnoughError(Exception):
-    """A run goes well and is stopped."""
+    """A run succeeds and is stopped."""
 
 
 def watcher() -> Callable[[Any], None]:
-    """Return a watcher that stops a run which has gone on for long enough."""
+    """Return a watcher that stops a run after this time."""
     began = time.monotonic()
 
     def watch(progress: Any) -> None:
@@ -35,8 +35,8 @@ def watcher() -> Callable[[Any], None]:
     return watch
 
 
-def verdict(call: Callable[[], object]) -> str:
-    """Return whether a call is accepted or refused as documented; anything else that is raised goes through.
+def outcome(call: Callable[[], object]) -> str:
+    """Return whether a call is accepted or refused as documented; other exceptions are not caught.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def verdict(call: Callable[[], object]) -> str:
     """
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        # A title may be in letters that the font of figures lacks.
+        # The font of figures may lack letters of a title.
         warnings.filterwarnings("ignore", "Glyph ")
         try:
             call()

@@ -1,4 +1,4 @@
-"""Jumps of all that is turned on the page, one after the other: none makes a stroke freeze or end for good."""
+"""Sequences of changes of the controls of the page: none makes a stroke freeze or end for good."""
 
 from __future__ import annotations
 
@@ -14,62 +14,62 @@ from stridula.app.parts import Part, Stop
 from stridula.app.playable import PRESETS, Playable, playable
 from stridula.scenarios import ScenarioError
 
-# Jumps that follow each other, in one instrument.
-JUMPS = 20
-UNBELIEVED = {"energy created", "not finite", "contact unsolved"}
+# Changes that follow each other, in one instrument.
+CHANGES = 20
+FAULTS = {"energy created", "not finite", "contact unsolved"}
 # Case and values, as the page holds them.
 Scene = tuple[str, dict[str, Any]]
 
 
-def inputs(seed: int, count: int, jumps: int = JUMPS) -> Iterator[list[tuple[str, Any, int]]]:
-    """Yield rows of jumps: what jumps, where to, and hundredths of a second that are played then.
+def inputs(seed: int, count: int, changes: int = CHANGES) -> Iterator[list[tuple[str, Any, int]]]:
+    """Yield sequences of changes: the control, its new value, and hundredths of a second played after it.
 
     Parameters
     ----------
     seed : int
-        The same seed yields the same.
+        Seed; equal seeds yield equal sequences.
     count : int
-        How many rows.
-    jumps : int, optional
-        Jumps of each.
+        Number of sequences.
+    changes : int, optional
+        Changes in each.
     """
     for number in range(count):
         dice = random.Random(f"{seed} {number}")
         row: list[tuple[str, Any, int]] = [("case", dice.choice(PRESETS), dice.randint(1, 40))]
-        for _ in range(jumps):
-            row.append((*_jump(dice), dice.randint(1, 6)))
+        for _ in range(changes):
+            row.append((*_change(dice), dice.randint(1, 6)))
         yield row
 
 
 def check(given: list[tuple[str, Any, int]]) -> str:
-    """Play a row of jumps; return whether any was refused, ``accepted`` or ``refused``.
+    """Play a sequence of changes; return whether any was refused, ``accepted`` or ``refused``.
 
     Parameters
     ----------
     given : list of tuple
-        What `inputs` yields.
+        A sequence of `inputs`.
 
     Raises
     ------
     AssertionError
-        If a stroke freezes or ends for good, or a refusal is not in lines.
+        If a stroke freezes or ends for good, or a refusal is not made of single lines.
     """
     return "refused" if played(given)["refused"] else "accepted"
 
 
 def played(given: list[tuple[str, Any, int]]) -> dict[str, int]:
-    """Play a row of jumps; return how many were played, went on in their stroke and were refused.
+    """Play a sequence of changes; return how many were played, continued their stroke and were refused.
 
-    Counted, too, are strokes that were not believed, and scenarios that cannot be: one that ends as soon as it begins,
-    without any jump, may end for good.
+    Strokes with faults are also counted, and scenarios that end as soon as they begin: without any change, such a
+    scenario may end for good.
     """
-    (_, case, first), *jumps = given
-    counts = dict.fromkeys(("played", "went on", "refused", "unbelieved", "beyond belief"), 0)
+    (_, case, first), *changes = given
+    counts = dict.fromkeys(("played", "went on", "refused", "faulty", "ends at once"), 0)
     scene: Scene = (case, {})
     instrument = Instrument(playable(case, None, {}))
     _play(instrument, first)
-    for number, (what, where, hundredths) in enumerate(jumps):
-        told = f"jump {number}, {what} to {where!r} in {scene}"
+    for number, (what, where, hundredths) in enumerate(changes):
+        told = f"change {number}, {what} to {where!r} in {scene}"
         wanted = _wanted(scene, what, where)
         try:
             changed = playable(wanted[0], None, wanted[1])
@@ -81,17 +81,17 @@ def played(given: list[tuple[str, Any, int]]) -> dict[str, int]:
         counts["played"] += 1
         counts["went on"] += instrument.change(changed, number)
         samples, ended = _play(instrument, hundredths)
-        counts["unbelieved"] += sum(why in UNBELIEVED for why in ended)
+        counts["faulty"] += sum(why in FAULTS for why in ended)
         if instrument.ended:
             assert _ends_by_itself(changed), f"{told}: {instrument.ended}"
-            counts["beyond belief"] += 1
+            counts["ends at once"] += 1
             continue
         assert samples == hundredths * RATE // 100, f"{told}: {samples} samples of {hundredths} hundredths"
     return counts
 
 
 def _play(instrument: Instrument, hundredths: int) -> tuple[int, list[str]]:
-    """Play on; return the samples that came and why strokes ended."""
+    """Continue; return the number of samples and the reasons why strokes ended."""
     samples, ended = 0, []
     for _ in range(hundredths):
         for one in instrument.play(RATE // 100):
@@ -109,7 +109,7 @@ def _ends_by_itself(scenario: Playable) -> bool:
     return bool(alone.ended)
 
 
-def _jump(dice: random.Random) -> tuple[str, Any]:
+def _change(dice: random.Random) -> tuple[str, Any]:
     kind = dice.random()
     if kind < 0.08:
         return "case", dice.choice(PRESETS)
@@ -117,13 +117,13 @@ def _jump(dice: random.Random) -> tuple[str, Any]:
         choice = dice.choice(CHOICES)
         return choice.key, dice.choice(list(choice.kinds))
     control = dice.choice(CONTROLS)
-    # Ends of the slider are where one lands first.
+    # The ends of the slider are likely values.
     share = dice.choice((0.0, 1.0)) if dice.random() < 0.15 else dice.random()
     return control.key, (control.low + share * (control.high - control.low)) * control.scale
 
 
 def _wanted(scene: Scene, what: str, where: Any) -> Scene:
-    """Return what the page asks for after a jump."""
+    """Return the scene that the page asks for after a change."""
     case, overrides = scene
     if what == "case":
         return where, {}

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 Tell = Callable[[str | None], None]
 
 
-class Doings(logging.Handler):
+class TaskHandler(logging.Handler):
     """Handler that passes on the names of long tasks."""
 
     def __init__(self, tell: Tell) -> None:
@@ -19,16 +19,16 @@ class Doings(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Pass on the task of a record."""
-        if hasattr(record, "doing"):
-            self.tell(record.doing)
+        if hasattr(record, "task"):
+            self.tell(record.task)
 
 
 @contextmanager
-def told_of_doings(tell: Tell) -> Iterator[None]:
+def notified_of_tasks(tell: Tell) -> Iterator[None]:
     """Pass the names of long tasks to a function; earlier handlers are suspended meanwhile."""
     logger = logging.getLogger("stridula")
     level, handlers = logger.level, logger.handlers[:]
-    logger.handlers[:] = [Doings(tell)]
+    logger.handlers[:] = [TaskHandler(tell)]
     logger.setLevel(logging.INFO)
     try:
         yield

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
-from .surface_contact import SurfaceContact
-from .surface_points import SurfacePoints
+from ..contact.surface_contact import SurfaceContact
+from ..contact.surface_points import SurfacePoints
 
 Faces = SurfaceContact | SurfacePoints
 

@@ -1,4 +1,4 @@
-"""How far linear theory and runs agree: counts on a sweep made by hand."""
+"""Agreement of linear theory and runs: counts on a sweep made by hand."""
 
 from __future__ import annotations
 
@@ -60,13 +60,13 @@ def test_runs_are_counted_under_each_verdict():
     }
 
 
-def test_nothing_to_compare_is_nothing():
+def test_without_runs_to_compare_all_counts_are_zero():
     counts = st.agreement(swept([("", np.nan, "")] * 3))
     assert int(counts["runs"].sum()) == int(counts["compared"]) == int(counts["agree"]) == 0
 
 
 @pytest.mark.parametrize("name", ["regime", "unstable_modes", "equilibrium"])
-def test_a_sweep_without_regimes_or_linear_theory_is_told(name):
+def test_a_sweep_without_regimes_or_linear_theory_is_refused(name):
     with pytest.raises(ValueError, match=f"found must have {name}, which the measure regime gives, got "):
         st.agreement(swept().drop_vars(name))
     with pytest.raises(ValueError, match="found must be a Dataset, got 3"):

@@ -1,4 +1,4 @@
-"""Arguments of the wrong kind or size: refused in one line, at once, before anything is made of them."""
+"""Arguments of the wrong kind or size: refused in one line, before any computation."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ import scipy.sparse
 
 import stridula as st
 from stridula import analysis, plot
-from stridula.bodies.ordinary import MOST_MODES
 from stridula.checks import brief, by_key, count, finite, in_one_line, suggestion
+from stridula.ordinary import MOST_MODES
 
 STEEL, STRIP = st.Material(2.1e11, 7800.0), st.Rectangle(0.02, 0.008)
 
@@ -39,7 +39,7 @@ def refused(call, pattern, kind=ValueError):
 
 
 @pytest.mark.parametrize("place", ["", "[contact]\n"])
-def test_of_many_unknown_keys_the_first_are_told_and_the_rest_counted(tmp_path, place):
+def test_many_unknown_keys_are_shortened_with_a_count(tmp_path, place):
     keys = "\n".join(f"key{k} = {k}" for k in range(20_000))
     (tmp_path / "case.toml").write_text(f'base = "squeal"\n{place}{keys}\n')
     began = time.perf_counter()
@@ -53,7 +53,7 @@ def test_of_many_unknown_keys_the_first_are_told_and_the_rest_counted(tmp_path, 
     assert str(caught.value).endswith("other problems")
 
 
-def test_problems_that_are_few_are_all_told():
+def test_few_problems_are_all_reported():
     assert st.ScenarioError(["a", "b", "a"]).problems == ("a", "b")
     assert str(st.ScenarioError(["a\nb", "c"])) == "a b; c"
     assert st.ScenarioError([str(k) for k in range(21)]).problems[-1] == "1 other problem"
@@ -62,7 +62,7 @@ def test_problems_that_are_few_are_all_told():
     assert len(str(long)) < 2000
 
 
-def test_keys_set_by_hand_are_not_looked_at_for_ever():
+def test_many_bad_keys_are_refused_quickly():
     began = time.perf_counter()
     with pytest.raises(st.ScenarioError) as caught:
         st.load_scenario("squeal", {f"key{k}": 1 for k in range(5000)})
@@ -71,7 +71,7 @@ def test_keys_set_by_hand_are_not_looked_at_for_ever():
     assert caught.value.problems[-1] == "keys must be valid before others are checked, 4981 were not checked"
 
 
-def test_a_scenario_holds_so_many_bodies_at_most(tmp_path):
+def test_the_number_of_bodies_is_limited(tmp_path):
     tables = "".join(f'[bodies.b{k}]\nkind = "point mass"\nmass = 1.0\n' for k in range(3000))
     (tmp_path / "case.toml").write_text(
         f"{tables}[[contacts]]\ntip = {{ body = 'b0' }}\ntrack = {{ kind = 'rigid' }}\n"
@@ -91,7 +91,7 @@ def test_values_are_cut_in_messages(tmp_path):
     refused(lambda: st.save(st.load_scenario("squeal").simulate(duration=1e-4), "y" * 3000), "name too long", OSError)
 
 
-def test_a_number_that_is_none_is_named_by_its_kind(run):
+def test_values_that_are_not_numbers_are_named_by_their_type(run):
     assert refused(lambda: finite("x", run), "must be a number") == "x must be a number, got a Dataset"
     assert refused(lambda: finite("x", 10**400), "must be finite") == "x must be finite, got an int"
     assert refused(lambda: count("x", 5, high=4), "at most") == "x must be at most 4, got 5"
@@ -105,7 +105,7 @@ def test_a_number_that_is_none_is_named_by_its_kind(run):
 # Matrices.
 
 
-def test_an_npz_is_judged_by_its_headers(tmp_path):
+def test_an_npz_is_checked_by_its_headers(tmp_path):
     large = np.zeros((9000, 9000))
     np.savez_compressed(tmp_path / "large.npz", mass=large, stiffness=large)
     assert (tmp_path / "large.npz").stat().st_size < 2e6
@@ -118,7 +118,7 @@ def test_an_npz_is_judged_by_its_headers(tmp_path):
     tracemalloc.stop()
 
 
-def test_a_header_that_says_more_than_there_is_makes_no_room(tmp_path):
+def test_a_header_with_too_large_sizes_allocates_nothing(tmp_path):
     header = b"\x93NUMPY\x01\x00v\x00" + b"{'descr': '<f8', 'fortran_order': False, 'shape': (4000, 4000), }"
     with zipfile.ZipFile(tmp_path / "body.npz", "w") as archive:
         for name in ("mass", "stiffness"):
@@ -157,8 +157,8 @@ def _big_endian(arrays):
     return content
 
 
-def test_a_sparse_matrix_that_points_beyond_itself_ends_no_process(tmp_path):
-    # To unfold it would write outside of its memory.
+def test_a_sparse_matrix_with_bad_indices_crashes_no_process(tmp_path):
+    # Expanding it would write outside of its memory.
     bad = scipy.sparse.csc_array(np.eye(3))
     bad.indices[1] = 10**6
     refused(lambda: st.ReducedBody(bad, np.eye(3), {"tip": (0, 1)}), "indices")
@@ -184,7 +184,7 @@ def test_a_sparse_matrix_that_points_beyond_itself_ends_no_process(tmp_path):
         ({"section.height": 1e200}, "width and height must be of ordinary size"),
     ],
 )
-def test_tracks_have_so_many_modes_at_most(keys, message):
+def test_the_number_of_modes_of_a_track_is_limited(keys, message):
     st.load_scenario("squeal")
     tracemalloc.start()
     with pytest.raises(st.ScenarioError, match=message):
@@ -193,7 +193,7 @@ def test_tracks_have_so_many_modes_at_most(keys, message):
     tracemalloc.stop()
 
 
-def test_so_many_modes_may_be_asked_for():
+def test_the_number_of_requested_modes_is_limited():
     beam = st.ModalBeam(STEEL, STRIP, 1.0, bending_modes=MOST_MODES - 20)
     assert beam.modes().count == MOST_MODES
     refused(lambda: st.ModalBeam(STEEL, STRIP, 1.0, bending_modes=MOST_MODES), "modes must be at most 50000 in all")
@@ -206,7 +206,7 @@ def test_so_many_modes_may_be_asked_for():
     refused(lambda: st.ModalPlate(STEEL, 1e-200, 1.0, 1.0, cutoff=1e4), "must")
 
 
-def test_springs_couple_so_many_modes_at_most():
+def test_the_number_of_coupled_modes_is_limited():
     beam, mass = st.ModalBeam(STEEL, STRIP, 1.0, bending_modes=5000), st.PointMass(1.0)
     system = st.System(
         st.PointContact(mass.centre, beam, at=0.5), (), [st.Spring(beam.at(0.3), mass.centre, stiffness=1e3)]
@@ -251,7 +251,7 @@ def test_values_by_key_are_a_mapping(overrides):
 
 
 @pytest.mark.parametrize("path", [0, 1, 1.5, None, b"x", "a\0b"])
-def test_a_number_is_no_file(run, path):
+def test_a_number_is_not_a_file(run, path):
     for call in (st.load, lambda path: st.save(run, path), st.read_wav):
         refused(lambda call=call: call(path), "^path must be the name of a file, got ")
     for stream in range(3):
@@ -266,7 +266,7 @@ def test_a_number_is_no_file(run, path):
         ({"frame": 1e-300}, "^frame must be from 1e-06 to 10000"),
     ],
 )
-def test_a_regime_is_not_looked_for_for_ever(run, options, message):
+def test_the_search_for_a_regime_is_limited(run, options, message):
     refused(lambda: st.regime(run, **options), message)
 
 
@@ -275,7 +275,7 @@ def test_a_record_shorter_than_a_sample_of_the_rate_has_a_regime(run):
     assert st.regime(run, rate=1e-2, lowest_tone=1e-3)["audibility"] == 0.0
 
 
-def test_a_watcher_of_a_calibration_says_itself_what_is_wrong():
+def test_errors_of_calibration_watchers_are_raised():
     def calibrate(watcher):
         def measured(points):
             return [{"x": 1.0} for _ in points]
@@ -304,8 +304,8 @@ def test_sound_of_no_wavelength_is_refused():
             lambda run: run.isel(contact_status=[0, 1]),
             "must have a status_share of each of separated, sticking, sliding",
         ),
-        (lambda run: run.assign_coords(time=0.0 * run.time), "must have finite times that rise"),
-        (lambda run: run.assign_coords(time=run.time[::-1].values), "must have finite times that rise"),
+        (lambda run: run.assign_coords(time=0.0 * run.time), "must have finite, increasing times"),
+        (lambda run: run.assign_coords(time=run.time[::-1].values), "must have finite, increasing times"),
         (lambda run: run.assign(status_share=("time", np.ones(run.sizes["time"]))), "must have a status_share of each"),
         (lambda run: run.assign(normal_force=1.0), "must have a normal_force of numbers over time"),
         (lambda run: run.assign(normal_force=run.normal_force.astype(str)), "must have a normal_force of numbers"),
@@ -320,10 +320,10 @@ def test_a_record_that_was_edited_is_refused(run, edit, message):
         refused(lambda: plot.timeline(edited, ["normal_force", "status"]), message)
 
 
-# What a process that was killed leaves.
+# Remains of a killed process.
 
 
-def test_what_a_killed_process_left_is_removed_by_the_next_that_writes(tmp_path, run):
+def test_remains_of_a_killed_process_are_removed_by_the_next_writer(tmp_path, run):
     gone = subprocess.Popen([sys.executable, "-c", ""])
     gone.wait()
     left = tmp_path / f".stridula-{gone.pid}-12345.part"
@@ -335,7 +335,7 @@ def test_what_a_killed_process_left_is_removed_by_the_next_that_writes(tmp_path,
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no locks there")
-def test_what_another_machine_writes_is_left_alone(tmp_path, run):
+def test_files_of_another_machine_are_left_alone(tmp_path, run):
     import fcntl
 
     gone = subprocess.Popen([sys.executable, "-c", ""])
@@ -349,7 +349,7 @@ def test_what_another_machine_writes_is_left_alone(tmp_path, run):
     assert not written.exists()
 
 
-def test_a_state_beyond_all_sizes_is_not_gone_on_from(run):
+def test_a_state_with_excessive_values_is_not_continued(run):
     edited = run.assign(state_modal=run.state_modal * 0.0 + 1e308)
     system = st.load_scenario("squeal").system
     refused(lambda: st.simulate(system, 1e-3, start=edited), "^start must have a finite state_modal")

@@ -12,10 +12,10 @@ from .._kernels import layout as at
 from ..arrays import Array
 from ..bodies import AxisymmetricBody, BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate
 from ..contact import PointContact
-from ..lowering import Assembly
-from ..lowering.schemes import Scheme
 from ..records.state import State
 from ..system import System
+from .assembly import Assembly
+from .schemes import Scheme
 
 # Fields of a body of revolution without influence on its modes.
 NO_SHAPE = ("damping", "turning", "turning_history")

@@ -1,4 +1,4 @@
-"""A track and a law from outside the package march as those within: nothing in it need be told of them."""
+"""A track and a law from outside the package work like built-in ones, without registration."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 import stridula as st
 
-from .toys import Cable, Halving
+from .user_classes import Cable, Halving
 
 STEP = 5e-6
 

@@ -1,4 +1,4 @@
-"""The page on another machine, over plain http: browsers keep the thread of the sound to secure addresses."""
+"""The page from another machine over plain http: browsers allow the audio thread for secure addresses only."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .conftest import launched
 from .serving import Server
 
 NAME = "bench"
-# Whatever goes to the loudspeakers is listened to.
+# The output to the loudspeakers is recorded.
 LISTENS = """const connect = AudioNode.prototype.connect;
 AudioNode.prototype.connect = function (to, ...more) {
   if (to === this.context.destination) {
@@ -24,7 +24,7 @@ window.loudest = () => {
   ear.getFloatTimeDomainData(heard);
   return Math.max(...heard.map(Math.abs));
 };"""
-# What browsers say of plain http, and of what they have kept for it.
+# Messages of browsers about plain http and their caches.
 EXPECTED = ("Cross-Origin-Opener-Policy", "ScriptProcessorNode is deprecated")
 
 
@@ -45,7 +45,7 @@ def elsewhere(tmp_path):
     assert server.complaints == ""
 
 
-def test_a_page_that_is_not_secure_sounds_too(chromium, elsewhere):
+def test_a_page_over_http_also_has_sound(chromium, elsewhere):
     with Browsing(chromium, elsewhere) as browsing:
         browsing.context.add_init_script(LISTENS)
         page = browsing.open()
@@ -64,7 +64,7 @@ def test_a_page_that_is_not_secure_sounds_too(chromium, elsewhere):
         browsing.complaints = [said for said in browsing.complaints if not any(word in said for word in EXPECTED)]
 
 
-def test_the_thread_of_the_sound_is_taken_where_there_is_one(chromium, server):
+def test_the_audio_thread_is_used_where_available(chromium, server):
     with Browsing(chromium, server) as browsing:
         browsing.context.add_init_script(LISTENS)
         page = browsing.open()

@@ -1,4 +1,4 @@
-"""Callers that dawdle, and what is no HTTP: they take nothing from others, and the terminal says nothing of them."""
+"""Slow clients and invalid HTTP: they do not disturb others, and the terminal shows nothing of them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MOST_CONNECTIONS = 200
 
 @pytest.fixture
 def hurried(monkeypatch) -> Iterator[int]:
-    """Serve the page in a thread, in a hurry, and return its port."""
+    """Serve the page in a thread with short time limits, and return its port."""
     monkeypatch.setattr(caller, "HURRY", HURRY)
     monkeypatch.setattr(session, "HURRY", HURRY)
     server = serve.server(False)
@@ -68,14 +68,14 @@ HALVES = {
 
 
 @pytest.mark.parametrize("half", HALVES.values(), ids=HALVES)
-def test_who_does_not_ask_in_time_is_let_go(hurried, half):
+def test_clients_that_send_nothing_in_time_are_dropped(hurried, half):
     with call(hurried) as one:
         one.sendall(half)
         assert is_let_go(one)
     assert status(hurried) == 200
 
 
-def test_many_who_do_not_ask_give_way(hurried):
+def test_many_silent_clients_give_way(hurried):
     with ExitStack() as stack:
         for number in range(MOST_CONNECTIONS + 20):
             one = stack.enter_context(call(hurried))
@@ -90,14 +90,14 @@ def test_a_page_that_asks_slowly_is_served(hurried):
         assert one.recv(100).startswith(b"HTTP/1.1 200")
 
 
-def test_a_socket_on_which_nothing_is_said_makes_room(hurried):
+def test_a_silent_socket_makes_room(hurried):
     words = {"origin": f"http://127.0.0.1:{hurried}", "open_timeout": WAIT}
     with connect(f"ws://127.0.0.1:{hurried}/socket", **words) as silent:
         assert '"hello"' in silent.recv(WAIT)
         with pytest.raises(ConnectionClosed) as closed:
             silent.recv(WAIT)
     assert (closed.value.rcvd.code, closed.value.rcvd.reason) == (4408, "a page must send a message within 1 s")
-    # Who spoke once may be silent.
+    # A client that has sent a request may be silent.
     with connect(f"ws://127.0.0.1:{hurried}/socket", **words) as one:
         one.recv(WAIT)
         one.send('{"type": "repeat", "on": true}')
@@ -120,7 +120,7 @@ INSERTED = (
     b"\r\n", b"\0", b"\xff\xfe", b" ", b":", b"Content-Length: -1\r\n", b"Content-Length: 1" + 40 * b"0" + b"\r\n",
     b"Transfer-Encoding: chunked\r\n", b"HTTP/9.9", 20_000 * b"A", b"%00", b"\r\n\r\n", b"GET / HTTP/1.1\r\n\r\n",
 )  # fmt: skip
-# What sockets may not hold: no UTF-8, no such opcode, reserved bits, no mask, a size without end, no start.
+# Invalid frames: no UTF-8, unknown opcode, reserved bits, no mask, excessive size, no start.
 FRAMES = (
     b"\x81\x82\0\0\0\0\xff\xfe", b"\x83\x81\0\0\0\0x", b"\xf1\x81\0\0\0\0x", b"\x81\x01x",
     b"\x81\xff\x7f" + 11 * b"\xff", b"\x80\x81\0\0\0\0x", b"\x88\x81\0\0\0\0x",
@@ -128,7 +128,7 @@ FRAMES = (
 
 
 def mutated(random: random.Random, host: str) -> bytes:
-    """Return one or two requests with a few bytes put in, taken out or changed."""
+    """Return one or two requests with a few bytes inserted, removed or changed."""
     data = bytearray("".join(random.choices(GOOD, k=random.randint(1, 2))).format(host=host).encode())
     for _ in range(random.randint(0, 4)):
         at = random.randrange(len(data))
@@ -144,7 +144,7 @@ def mutated(random: random.Random, host: str) -> bytes:
     return bytes(data)
 
 
-def test_what_is_no_http_is_refused_without_a_word_on_the_terminal(own):
+def test_invalid_http_is_refused_without_terminal_output(own):
     dice = random.Random(7)
     for _ in range(400):
         with call(own.port) as one, suppress(ConnectionError, TimeoutError):

@@ -1,4 +1,4 @@
-"""What the page holds of its scene once something of it was refused."""
+"""Values of the page after some of them were refused."""
 
 from __future__ import annotations
 
@@ -30,6 +30,6 @@ def scene(case: str = "squeal", text: str | None = None, **overrides: float) -> 
         (scene("", "bad"), scene("judder"), "", scene(), scene("judder")),
     ],
 )
-def test_what_was_refused_goes_back_unless_it_was_turned_again(tmp_path, sent, now, refused, kept, wanted):
+def test_refused_values_are_reset_unless_changed_again(tmp_path, sent, now, refused, kept, wanted):
     given = {"sent": sent, "now": now, "refused": {refused: ["no"]}, "kept": kept}
     assert result_of(tmp_path, PUT_BACK, given) == wanted

@@ -6,17 +6,17 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from ..doings import told_of_doings
+from ..long_tasks import notified_of_tasks
 
 
 @contextmanager
-def doings_shown() -> Iterator[None]:
+def tasks_shown() -> Iterator[None]:
     """Show slow work on a line if standard error is a terminal and no progress bar shows it."""
     line: Any = None
 
-    def tell(doing: str | None) -> None:
+    def tell(task: str | None) -> None:
         nonlocal line
-        if doing is None:
+        if task is None:
             line.stop()
             return
         # Imported here because most commands do no slow work.
@@ -25,12 +25,12 @@ def doings_shown() -> Iterator[None]:
         from rich.text import Text
 
         line = line or Status("", console=Console(stderr=True))
-        line.update(Text(f"{doing} ..."))
+        line.update(Text(f"{task} ..."))
         if line.console.is_terminal:
             line.start()
 
     try:
-        with told_of_doings(tell):
+        with notified_of_tasks(tell):
             yield
     finally:
         if line is not None:

@@ -1,4 +1,4 @@
-"""Every public callable with arguments of all kinds, some of them what it asks for."""
+"""Every public callable with arguments of all kinds, some of them valid."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ import stridula as st
 from stridula import analysis, plot, scenarios, studies
 
 from .numbers import number, plain
-from .verdicts import folder, verdict, watcher
+from .outcomes import folder, outcome, watcher
 
-# A name, and for each argument what it is: a word of `THINGS`, or a plain value.
+# A name, and for each argument a word of `THINGS` or a plain value.
 Given = tuple[str, dict[str, tuple[str, Any]]]
 
 MODULES = {"": st, "analysis.": analysis, "plot.": plot, "scenarios.": scenarios, "studies.": studies}
-# What is returned and not called.
+# Results, which users do not call.
 RESULTS = {
     "Case", "CalibrationProgress", "Diverged", "Film", "Interrupted", "Modes", "Progress", "Scenario", "ScenarioError",
     "SoundFile", "SweepProgress",
 }  # fmt: skip
-# Films and models of hearing take seconds where all is well.
+# Films and models of hearing take seconds for valid arguments.
 SLOW = {
     "animate",
     "animate_mode",
@@ -44,7 +44,7 @@ SLOW = {
 }
 
 
-# What keeps short what is long as it comes.
+# Arguments that shorten long calls.
 FEW = {
     "sensitivity": {"samples": 2, "resamples": 1, "duration": 1e-3},
     "sweep": {"duration": 1e-3},
@@ -58,19 +58,19 @@ def inputs(seed: int, count: int) -> Iterator[Given]:
     """Return names of callables and their arguments."""
     names = list(_callables())
     for k in range(count):
-        dice = random.Random(f"doors {seed} {k}")
+        dice = random.Random(f"calls {seed} {k}")
         name = dice.choice(names)
         yield name, _arguments(dice, name)
 
 
 def check(given: Given) -> str:
-    """Return what comes of a call."""
+    """Return the outcome of a call."""
     name, arguments = given
     with folder():
         Path("file.txt").write_text("x")
         values = {word: _thing(kind, value) for word, (kind, value) in arguments.items()}
         try:
-            return verdict(lambda: _callables()[name](**values))
+            return outcome(lambda: _callables()[name](**values))
         finally:
             pyplot.close("all")
             for open_ever in range(3):
@@ -240,7 +240,7 @@ _SIGNALS = _things("signal", "one sound", "constant signal")
 _NAMES = _plain("file.txt", "new.nc", "new.csv", "new.mat", "new.png", "new.wav", "missing/new.nc", "squeal", "")
 _SYSTEMS = _things("system")
 _STATUS = _plain("sticking", "sliding", "separated")
-# What an argument of a name is asked to be, in one of its functions at least.
+# Kinds of arguments by name, valid in at least one function.
 FITTING: dict[str, tuple[tuple[str, Any], ...]] = {
     **dict.fromkeys(("young", "density", "stiffness"), _plain(2.1e11, 7800.0, 1e6) + _things("matrix")),
     **dict.fromkeys(("length", "width", "thickness", "height", "diameter", "area", "second_moment"), _NUMBERS),

@@ -1,4 +1,4 @@
-"""Refuse to lie: every end is reached, says when, where and why, and keeps what was recorded before."""
+"""Runs that stop with an error: time, place and cause are reported, and the record before is kept."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def stopped(system, duration=0.2, **words):
 
 
 def check(stop, ended, until, name="shoe"):
-    """The end is named in record and message, with time, contact and cause; the record before it is whole."""
+    """The end is named in record and message, with time, contact and cause; the record before it is complete."""
     record, message = stop.record, str(stop)
     assert record.attrs["ended"] == ended
     assert WHAT[ended] in message
@@ -64,7 +64,7 @@ def ended_of(stop):
     return stop.record.attrs["ended"]
 
 
-def test_every_way_to_end_badly_has_its_words():
+def test_every_failure_has_a_message():
     for ended in ENDED.values():
         assert (ended in WHAT) == (ended in CAUSE) == (ended not in ("finished", "off the track"))
 
@@ -99,18 +99,18 @@ def chain() -> st.System:
 
 
 def damping_below_zero(modes):
-    """A dashpot that gives: increments that grow by themselves."""
+    """A dashpot with negative damping: increments that grow."""
     modes.block[layout.B, 0] += 0.02 * (modes.block[layout.B, 0] > 0)
     modes.matrices[layout.KEPT, :1, :1] += 0.02
 
 
 def heavier_answer(modes):
-    """Contact forces that move what they push by more than its mass allows."""
+    """Contact forces that move bodies by more than their mass allows."""
     modes.matrices[layout.MOBILITY] *= 1.001
 
 
 def leaking_energy(modes):
-    """A kinetic energy that is not that of the march."""
+    """A kinetic energy that differs from that of the march."""
     modes.matrices[layout.KINETIC] *= 1.0 + 1e-6
 
 
@@ -124,7 +124,7 @@ def leaking_energy(modes):
         (chain, leaking_energy),
     ],
 )
-def test_energy_from_nowhere(make, fault, scheme, monkeypatch):
+def test_created_energy(make, fault, scheme, monkeypatch):
     """A fault in the recurrence shows in the energies, long before anything overflows.
 
     The march of one contact has no coefficients of its own for energies, which could differ from those of the motion.
@@ -139,7 +139,7 @@ def test_energy_from_nowhere(make, fault, scheme, monkeypatch):
 
 
 @BOTH
-def test_a_state_that_something_else_wrote_to(scheme, monkeypatch):
+def test_a_state_modified_from_outside(scheme, monkeypatch):
     """A position moved by a part in ten thousand between two chunks of a march."""
     advance = March.advance
 
@@ -152,8 +152,8 @@ def test_a_state_that_something_else_wrote_to(scheme, monkeypatch):
     check(stopped(oscillator(), scheme=scheme), "energy created", (0, 1000))
 
 
-def test_energy_from_nowhere_keeps_the_samples_before(monkeypatch):
-    """The record kept is that of the sound run, bit for bit, up to the sample that is wrong."""
+def test_created_energy_keeps_the_earlier_samples(monkeypatch):
+    """The record kept is that of the correct run, bit for bit, up to the wrong sample."""
     system = oscillator(history=st.Harmonic(20.0), size=1.0)
     words = {"step": STEP, "sample_rate": 1e4, "probes": [st.Velocity(MASS.centre, "x")]}
     whole = st.simulate(system, 0.2, **words)
@@ -168,7 +168,7 @@ def test_energy_from_nowhere_keeps_the_samples_before(monkeypatch):
     stop = stopped(system, probes=words["probes"])
     check(stop, "energy created", (700, 700))
     for name in ("normal_force", "tangential_force", "kinetic_and_elastic", "velocity"):
-        # The last sample of a probe has nothing beyond it to be filtered with.
+        # The last sample of a probe lacks later values for the filter.
         np.testing.assert_array_equal(stop.record[name][:699], whole[name][:699])
 
 
@@ -188,8 +188,8 @@ def damping_that_gives(energies):
         (damping_that_gives, 60),
     ],
 )
-def test_what_counts_as_energy_from_nowhere(change, wrong):
-    """A ledger that does not close, stored energy below zero, friction that gives some back."""
+def test_definition_of_created_energy(change, wrong):
+    """A ledger that does not close, stored energy below zero, friction that adds energy."""
     energies = np.zeros((layout.ENERGIES, 100))
     energies[layout.STORED] = energies[layout.DRIVE_WORK] = np.linspace(0.0, 1.0, 100)
     change(energies)
@@ -205,7 +205,7 @@ def test_friction_of_a_law_with_state_may_give_back_what_it_stored():
 
 
 def groove(opening, mu=0.0, history=None) -> st.System:
-    """A mass pressed by 1 N into a groove whose walls stand `opening` degrees apart, or by that times a history."""
+    """A mass pressed by 1 N, constant or times a history, into a groove with walls at an angle of `opening` [deg]."""
     steep = radians(90.0 - opening / 2.0)
     walls = [
         st.PointContact(MASS.centre, st.RigidTrack(), inclination=lean, friction=st.Coulomb(mu), name=name)
@@ -215,7 +215,7 @@ def groove(opening, mu=0.0, history=None) -> st.System:
     return st.System(walls, [st.Force(MASS.centre, y=-1.0, **press)])
 
 
-# The forces of a step are not those of the one before.
+# The forces of a step differ from those of the previous one.
 CHANGING = st.Harmonic(100.0)
 
 
@@ -230,10 +230,10 @@ def test_a_wide_groove_is_solved():
 @pytest.mark.parametrize("opening", [1.0, 0.3, 0.1, 0.01])
 @pytest.mark.parametrize("mu", [0.0, 0.01])
 def test_a_narrow_groove_is_counted_or_stopped_or_right(opening, mu):
-    """Far more sweeps than the most would be needed. No force may pass for found that leaves the walls overlapped.
+    """It needs far more sweeps than allowed. No force may count as a solution that leaves the walls overlapped.
 
-    An exact answer, a step counted as unsolved with forces right to the tolerance of a stop, or a stop; never a run
-    that goes on with a hundredth of the force.
+    An exact solution, a step counted as unsolved with forces within the tolerance of a stop, or a stop; never a run
+    that continues with a hundredth of the force.
     """
     try:
         run = st.simulate(groove(opening, mu), 0.01, step=STEP, sample_rate=1e4, probes=[])
@@ -248,7 +248,7 @@ def test_a_narrow_groove_is_counted_or_stopped_or_right(opening, mu):
 
 
 def test_too_few_sweeps_are_counted():
-    """One sweep is no solution: every step in which both walls press is counted, or the run stops."""
+    """One sweep is not enough: every step in which both walls press is counted, or the run stops."""
     try:
         run = st.simulate(
             groove(60.0, history=CHANGING),
@@ -280,7 +280,7 @@ def test_a_stop_in_the_first_sample_keeps_an_empty_record():
 
 
 def walking_block(law) -> st.System:
-    """A block on two feet that is pressed and shaken; each foot lets go where the other one holds."""
+    """A block on two feet that is pressed and shaken; each foot slips while the other one holds."""
     half, mass = 0.03, 0.5
     points, k = {}, np.zeros((7, 7))
     for n, place in enumerate((-half, half)):
@@ -304,8 +304,8 @@ def walking_block(law) -> st.System:
 @BOTH
 @pytest.mark.parametrize("law", [st.Coulomb(0.6), st.StaticKinetic(0.6, 0.3), st.Stribeck(0.6, 0.3, 0.01)])
 def test_two_feet_that_let_go_find_their_forces(law, scheme):
-    """A foot that breaks away unloads by the drop from the static to the kinetic force, and what that does to the other
-    foot must not make the first one stick again: every step has a solution, whatever lets go first."""
+    """A foot that breaks away unloads by the drop from the static to the kinetic force, and the effect on the other
+    foot must not make the first one stick again: every step has a solution, whichever foot slips first."""
     run = st.simulate(walking_block(law), 0.3, scheme=scheme, step=5e-5, sample_rate=2e4, probes=[])
     assert not run.unsolved_steps.any()
     assert {1, 2} <= set(np.unique(run.status.values))
