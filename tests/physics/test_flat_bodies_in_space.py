@@ -1,4 +1,4 @@
-"""The sound of plates and beams in space: as in their own axes, as theory has it, and together with other bodies."""
+"""Sound of plates and beams in space: as in their own axes, against theory, and together with other bodies."""
 
 from __future__ import annotations
 
@@ -30,22 +30,22 @@ PLATE = st.ModalPlate(
     ALUMINIUM, 3e-3, 0.3, 0.25, (2, 2), damping=0.03, line=st.Line((0.05, 0.08), 0.4), plane=PLANE, name="plate"
 )
 BEAM = st.ModalBeam(STEEL, st.Rectangle(0.02, 0.01), 0.3, 2, 1, damping=0.03, plane=PLANE, name="beam")
-# Where the block stands in the world, and listeners in the axes of the track.
+# Place of the block in the world, and listeners in the axes of the track.
 THERE = np.array([0.3, -0.2, 0.1])
 EARS = np.array([[0.1, 0.05, 0.5], [0.4, 0.3, 0.7]])
 
 
 def along(vector) -> dict[str, float]:
-    """World components along and across the track and along its normal, as the words of a force."""
+    """World components of a vector in the axes of the track, as arguments of a force."""
     return dict(zip("xyz", (TURN @ np.asarray(vector)).tolist(), strict=True))
 
 
 def pressed(track) -> st.System:
-    """A block whose place in the world is known, pressed on a track that is turned and shifted."""
+    """A block with a place in the world, pressed on a track that is turned and shifted."""
     mesh = st.SolidMesh.block((0.006, 0.006, 0.009), (1, 1, 1))
     block = st.SolidBody(replace(mesh, nodes=mesh.nodes @ TURN.T + THERE), STEEL, points={"tip": 0}, cutoff=2e4)
     with pytest.MonkeyPatch.context() as patch:
-        # A coarse surface, for it is quick.
+        # A coarse surface is faster.
         patch.setattr(solid_surfaces, "MOST", 60)
         assert len(block.surface().points) < 200
     contact = st.PointContact(block.at("tip"), track, at=0.06, friction=st.Coulomb(0.3))
@@ -78,7 +78,7 @@ def beam():
 @pytest.mark.parametrize("baffled", [True, False], ids=["in a baffle", "in open air"])
 @pytest.mark.parametrize("kind", ["plate", "beam"])
 def test_turned_and_shifted_it_sounds_as_in_its_own_axes(kind, baffled, request):
-    """Alone it is driven by the normal forces along its line, in its system by all there are."""
+    """A track alone is driven by the normal forces along its line, a track in its system by all forces."""
     system, run, ears = request.getfixturevalue(kind)
     run, track = run.drop_vars(VARIABLE), system.track
     known = st.radiate(run, track, EARS, baffled=baffled)
@@ -94,12 +94,12 @@ def test_turned_and_shifted_it_sounds_as_in_its_own_axes(kind, baffled, request)
 
 
 @pytest.mark.parametrize("kind", ["plate", "beam"])
-def test_recorded_motion_is_what_is_heard(kind, request):
+def test_recorded_motion_is_heard(kind, request):
     system, run, ears = request.getfixturevalue(kind)
     known = st.radiate(run.drop_vars(VARIABLE), system, ears, bodies=[system.track])
     found = st.radiate(run, system, ears, bodies=[system.track])
     assert found.attrs["motion"] == "recorded"
-    # Samples of 50 us, of which one is what the two are apart.
+    # Samples of 50 us; the two differ by one sample.
     late = slice(60, 380)
     level = np.log10(np.mean(found.values[late] ** 2, axis=0) / np.mean(known.values[late] ** 2, axis=0))
     assert np.abs(10.0 * level).max() < 0.1
@@ -110,7 +110,7 @@ def test_recorded_motion_is_what_is_heard(kind, request):
 def test_the_whole_is_the_sum_of_its_bodies(plate):
     system, run, ears = plate
     block = system.slider
-    # Each is silent before it can arrive.
+    # Each sound is cut off before it can arrive.
     late = slice(60, None)
     for baffled in (None, True):
         whole = st.radiate(run, system, ears, baffled=baffled)
@@ -120,7 +120,7 @@ def test_the_whole_is_the_sum_of_its_bodies(plate):
         if baffled is None:
             rest = st.radiate(run, system, ears, bodies=[block]).values
         else:
-            # What the wall reflects is what its image hears.
+            # The reflected sound is that at the image of the listener.
             normal = system.track.frame[2]
             heights = (ears - THERE) @ normal
             images = ears - 2.0 * np.outer(heights, normal)
@@ -144,19 +144,19 @@ def test_ears_are_above_it_on_the_side_of_the_tip_by_default(plate):
 
 
 def test_even_patches_carry_too_much_air(monkeypatch):
-    """Negative control of the added masses of `stridula verify`: strengths do not know of the edges then."""
+    """Negative control of the added masses of `stridula verify`: such strengths do not fall to zero at the edges."""
     assert air_carried(0.1, 0.1) == pytest.approx(0.579, abs=1e-3)
     monkeypatch.setattr(sheets, "_cuts", lambda count, side: np.linspace(0.0, side, count))
     monkeypatch.setattr(sheets, "_points", lambda count, side: (np.arange(count - 1) + 0.5) * side / (count - 1))
     assert air_carried(0.1, 0.1) > 0.61
 
 
-def test_what_leaves_a_bent_plate_arrives():
+def test_the_power_of_a_bent_plate_arrives_far_away():
     """The power on its faces and that through a sphere far away, mode by mode."""
     radiator = SheetDipoles(sheet_of(panel_of(PLATE), 2500.0))
     wave = 2.0 * pi * 2000.0 / AIR.speed
     fit = radiator.fit(wave)
-    # Half of the work per acceleration is that on both faces; of a quarter of the points.
+    # Half the work for unit accelerations is that on both faces; the points are those of a quarter.
     shapes, areas = radiator.surface.shapes, radiator._areas
     near = -4.0 * 0.5 * np.imag(areas @ (fit.strengths[0] * shapes))
     cosines, weights = np.polynomial.legendre.leggauss(24)
@@ -172,7 +172,7 @@ def test_what_leaves_a_bent_plate_arrives():
 
 
 def test_it_shorts_out_below_and_sounds_as_in_a_baffle_far_above():
-    """At 4 kHz the air before it is moved as if there were a wall, to 0.7 dB; at 50 Hz it flows round the edges."""
+    """At 4 kHz the air in front of it moves as with a wall, to 0.7 dB; at 50 Hz it flows round the edges."""
     radiator, place, shares = SheetDipoles(sheet_of(panel_of(PLATE), 5e3)), np.array([0.1, 0.2, 0.5]), []
     for frequency in (50.0, 4000.0):
         wave = 2.0 * pi * frequency / AIR.speed
@@ -184,7 +184,7 @@ def test_it_shorts_out_below_and_sounds_as_in_a_baffle_far_above():
 
 
 def test_more_points_change_little():
-    """At the highest frequency for which a sheet says that it has points 0.3 dB, an octave below 0.1 dB."""
+    """By 0.3 dB at the highest frequency for which the points of a sheet are enough, by 0.1 dB an octave below."""
     places = np.array([0.15, 0.125, 0.0]) + 0.6 * Rotation.random(20, random_state=2).as_matrix()[:, 2]
     coarse, fine = (SheetDipoles(sheet_of(panel_of(PLATE), frequency)) for frequency in (2e3, 5e3))
     for frequency, most in ((1.0, 0.04), (0.5, 0.01)):
@@ -193,9 +193,9 @@ def test_more_points_change_little():
         assert (np.linalg.norm(found - known, axis=0) < most * np.linalg.norm(known, axis=0)).all()
 
 
-def test_a_blow_on_a_free_plate_is_heard_as_its_response_says():
-    """The spectrum of the sound over that of the force, against mobilities and fits at the frequencies."""
-    # Sound is cut off before it can arrive; of a blow later than at the start nothing is.
+def test_a_blow_on_a_free_plate_sounds_as_its_response_predicts():
+    """The spectrum of the sound, against that of the force with mobilities and fits at the frequencies."""
+    # Sound is cut off before it can arrive; that of a blow after the start is complete.
     plate, at = replace(PLATE, damping=0.1), (0.11, 0.07)
     (contact,) = pressed(plate).contacts
     times, heights = (0.0, 8e-3, 8.4e-3, 8.8e-3), (0.0, 0.0, 1.0, 0.0)
@@ -222,7 +222,7 @@ def test_a_blow_on_a_free_plate_is_heard_as_its_response_says():
 
 
 def test_a_beam_is_a_line_of_dipoles_only_where_it_is_slim():
-    """Over all of its sound: 20 mm are slim below 2.9 kHz."""
+    """Up to all frequencies of its sound: one of 20 mm is slim below 2.9 kHz."""
     for modes, form in ((2, "Slim"), (5, "OpenSurface")):
         body = replace(BEAM, bending_modes=modes, axial_modes=0)
         found = sounding_of("beam", body, False, np.zeros(3), False, AIR)
@@ -230,10 +230,10 @@ def test_a_beam_is_a_line_of_dipoles_only_where_it_is_slim():
 
 
 def test_the_surface_of_a_beam_sounds_as_the_line_of_dipoles_while_it_is_slim():
-    """Where half of its width is 0.02 to 0.13 of a wave over 2 pi, and no longer where it is 1.5.
+    """Where half of its width times the wavenumber is 0.02 to 0.13, and no longer where it is 1.5.
 
-    The air flows round its ends, too, which the line does not know: the shorter the half-waves are, here from ten to
-    three widths, the more. With its patches half a height wide the air that it carries is right to 2 %.
+    The air also flows round its ends, which the line neglects; the effect grows with shorter half-waves, here from ten
+    to three widths. With patches of half a height in width, the added mass is right to 2 %.
     """
     bar = st.ModalBeam(STEEL, st.Rectangle(0.02, 0.01), 0.2, 3, 0)
     radiator, area = SurfacePressures(bar.surface()), moved_area(bar.section)
@@ -249,15 +249,15 @@ def test_the_surface_of_a_beam_sounds_as_the_line_of_dipoles_while_it_is_slim():
     assert (apart[2] < -3.0).all()
 
 
-# Where bodies are, and what is refused
+# Places of bodies, and refused arguments
 
 
-def test_what_touches_a_body_of_known_place_is_beside_it():
+def test_bodies_are_placed_beside_those_with_places_in_the_world():
     system = pressed(PLATE)
     found = origins_in_space(system)
     np.testing.assert_allclose(found[system.slider], 0.0)
     np.testing.assert_allclose(found[PLATE] + PLATE.offset(0.06), THERE, atol=1e-12)
-    # Its corner is where width and length are zero, wherever the line is.
+    # Places on the plate count from its corner, for any line.
     corner = found[PLATE] - np.array(PLATE.track_line.origin) @ PLATE.frame[:2]
     np.testing.assert_allclose(found[PLATE] + PLATE.offset((0.2, 0.1)), corner + [0.2, 0.1] @ PLATE.frame[:2])
     # A rod on the far end of a beam that touches nothing else, and a gap.
@@ -289,7 +289,7 @@ def other_plate(away: float, plane=PLANE) -> st.System:
         ),
     ],
 )
-def test_what_is_refused(words, message, plate):
+def test_arguments_that_are_refused(words, message, plate):
     system, run, ears = plate
     given = {"system": system, "listener": ears, "bodies": [system.track], **words}
     if given["bodies"] == "slider":
@@ -324,7 +324,7 @@ def test_a_plate_in_the_plane_has_no_need_of_a_baffle(plate):
 
 
 def test_a_rod_that_slides_on_a_plate_sounds_as_in_the_plane():
-    """From the middle of its way, by all forces at its tip and at its end."""
+    """From the mean place of the rod, driven by all forces at its tip and its end."""
     rod = st.FiniteElementBeam(STEEL, st.Circle(0.004), 0.05, 0.2, elements=3, damping=0.02, cutoff=10e3, name="rod")
     flat = replace(PLATE, plane=None, line=None)
     heard = []
@@ -340,7 +340,7 @@ def test_a_rod_that_slides_on_a_plate_sounds_as_in_the_plane():
 
 
 def test_a_held_beam_moves_with_the_modes_of_its_drive():
-    """Slim or not they are those with the root held along x."""
+    """Slim or not, its modes are those with the root held along x."""
     for height, form in ((0.02, "OpenSurface"), (0.002, "Slim")):
         beam = st.FiniteElementBeam(STEEL, st.Rectangle(height, height), 0.05, 0.2, elements=3, cutoff=18e3)
         found = sounding_of("beam", beam, True, np.zeros(3), False, AIR)

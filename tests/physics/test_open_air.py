@@ -248,8 +248,8 @@ def test_thin_meshed_bodies_sound_as_the_same_bodies_of_revolution(thickness, di
 
 
 @pytest.mark.parametrize("wave", [10.0, 40.0])
-def test_a_thin_surface_sounds_as_thicker_ones_tell(wave, monkeypatch):
-    """Of a thirtieth of the width of its patches as of a tenth, mode for mode of the same amplitude."""
+def test_a_thin_surface_sounds_as_thicker_ones(wave, monkeypatch):
+    """With a thickness of a thirtieth and of a tenth of the width of its patches, for modes of the same amplitude."""
     monkeypatch.setattr(solid_surfaces, "MOST", 200)
     place, known = np.array([[0.1, 0.5, 0.1]]), None
     for thickness in (3e-3, 1e-3):
@@ -261,7 +261,7 @@ def test_a_thin_surface_sounds_as_thicker_ones_tell(wave, monkeypatch):
 
 
 def test_equations_too_ill_for_single_precision_are_solved_in_double(monkeypatch):
-    """Those of a foil on wide patches, whose normal equations had no factors."""
+    """Those of a foil with wide patches, whose normal equations have no Cholesky factors in single precision."""
     monkeypatch.setattr(solid_surfaces, "MOST", 200)
     surface = SurfacePressures(st.ModalPlate(STEEL, 3e-5, 0.3, 0.25, (2, 2)).surface())
     asked: list[tuple] = []
@@ -276,7 +276,7 @@ def test_equations_too_ill_for_single_precision_are_solved_in_double(monkeypatch
     np.testing.assert_allclose(pressures, known, atol=1e-5 * np.abs(known).max())
 
 
-def test_equations_that_tell_nothing_stay_refused():
+def test_singular_equations_are_refused():
     with pytest.raises(np.linalg.LinAlgError):
         equivalent_sources.least_squares(np.zeros((3, 2), dtype=np.complex64), np.ones((3, 1)))
 

@@ -70,8 +70,8 @@ def test_a_mass_keeps_its_weight():
     )
 
 
-def test_with_a_place_it_has_its_surface_there():
-    """As the beam in its own plane, whose tip is at the origin."""
+def test_with_an_origin_it_has_its_surface_there():
+    """The surface of the beam in its own plane, turned and shifted."""
     turn, place = Rotation.random(random_state=7).as_matrix(), np.array([0.3, -0.2, 0.1])
     body = st.ModalBody.placed(ROD, {"tip": "tip", "end": 0.3}, turn[:, 0], turn[:, 1], origin=place)
     known, found = ROD.surface(), body.surface()

@@ -362,7 +362,7 @@ def test_a_plate_in_space_is_heard_in_open_air_or_in_a_wall(stridula, tmp_path):
     assert (code, err) == (0, "")
     assert "run.wav: 2 channels" in out
     assert "without a surface and not heard: die; modes end at: sheet" in out
-    # Its length is along z, its normal along x, its width along y: ears are a metre beside it.
+    # Its length is along z, its normal along x, its width along y: the ears are a metre from it along its normal.
     ears = ("--listener", "1,0,0.15", "--listener=-1,0,0.15")
     assert stridula("sound", "run.nc", *ears, "--wav", "open.wav")[0] == 0
     before, behind = st.read_wav("open.wav").values.T

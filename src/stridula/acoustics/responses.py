@@ -133,7 +133,7 @@ class Thin:
         frequency = self.panel.angular_frequency[numbers] / (2.0 * np.pi)
         sent = by_fits(self.name, sheet, numbers, frequency, listeners, distances, air, interval, shift, bandwidth)
         if sheet.frequency < min(bandwidth, WHOLE_BEYOND * float(frequency.max())):
-            note = f"{self.name}: a sheet with points enough for sound up to {sheet.frequency:.4g} Hz only"
+            note = f"{self.name}: the points of its sheet are enough only up to {sheet.frequency:.4g} Hz"
             sent = replace(sent, notes=[*sent.notes, note])
         return sent.only(modes)
 

@@ -3,7 +3,7 @@
 The pressures in front of a thin plate and behind it differ by mu(y), and both sides have the same motion. The pressure
 is an integral over the plate,
 
-    p(x) = integral of mu dG/dn dS, G = exp(-i k R) / (4 pi R),
+    p(x) = integral of mu dG/dn dS, G = exp(-i k R) / (4 pi R).
 
 With the acceleration a of the plate along the normal n, dp/dn = -rho a on the plate is an equation for mu, the finite
 part of
@@ -14,7 +14,8 @@ Strengths are constant on patches between the Chebyshev points of each side, and
 between these: Multhopp's rule for wings (Lan 1974, J. Aircraft 11, 518-527), which includes the decrease of mu to zero
 at edges. The parts ``1 / R³`` and ``k² / 2 R`` of the kernel are integrated in closed form over the patches; the rest
 is smooth. A rectangle is symmetric about both of its middle lines: modes that are even or odd about each need only a
-quarter of the points."""
+quarter of the points.
+"""
 
 from __future__ import annotations
 
