@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +13,7 @@ from .bodies import BodyPoint
 from .checks import ArgumentError
 from .connections import ends
 from .contact import PointContact
+from .places import joints_of, origins_of, touched_at_rest
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,15 +79,6 @@ class Touch:
 
 
 @dataclass(frozen=True, eq=False)
-class _Joint:
-    """Two points and the offset at rest of the first from the second, or from the origin without a second [m]."""
-
-    first: BodyPoint
-    second: BodyPoint | None
-    away: Array
-
-
-@dataclass(frozen=True, eq=False)
 class Outline:
     """A body in the plane at rest, without its modes.
 
@@ -110,13 +102,13 @@ def outlines_of(system: Any) -> tuple[list[Outline], Array]:
 
     The same as in `lines_of`, without a search for modes.
     """
-    origins = _origins(list(_joints(system)))
+    origins = _origins(system)
     outlines = []
     for thing, origin in origins.items():
         is_line = hasattr(thing, "drawn_places")
         ends = origin + np.outer(thing.ends, thing.axes[0]) if is_line else origin[None]
         outlines.append(Outline(thing if is_line else thing.body, origin, ends))
-    tips = [origins[_thing(contact.tip)] + _offset(contact.tip) for contact in system.contacts]
+    tips = [origins[_thing(contact.tip)] + _offset(contact.tip)[:2] for contact in system.contacts]
     return outlines, np.array(tips)
 
 
@@ -125,11 +117,11 @@ def places_in(system: Any) -> Callable[[BodyPoint], Array | None]:
 
     Its result has the shape (2,), and is None for a point that touches nothing, is joined to nothing and is on no line.
     """
-    origins = _origins(list(_joints(system)))
+    origins = _origins(system)
 
     def place(point: BodyPoint) -> Array | None:
         origin = origins.get(_thing(point))
-        return None if origin is None else np.asarray(origin + _offset(point))
+        return None if origin is None else np.asarray(origin + _offset(point)[:2])
 
     return place
 
@@ -146,10 +138,10 @@ def lines_of(system: Any) -> tuple[list[Line], list[Touch]]:
         If bodies are in space.
     """
     check_in_plane(system)
-    joints = list(_joints(system))
+    joints = list(joints_of(system))
     points = [point for joint in joints for point in (joint.first, joint.second) if point is not None]
     points += [point for one in system.connections for point in ends(one)]
-    origins = _origins(joints)
+    origins = _origins(system)
     numbers = {thing: number for number, thing in enumerate(origins)}
     lines = [_line(thing, origin, points, system) for thing, origin in origins.items()]
 
@@ -159,7 +151,7 @@ def lines_of(system: Any) -> tuple[list[Line], list[Touch]]:
 
     touches = []
     for contact in system.contacts:
-        touched = _touched(contact)
+        touched = touched_at_rest(contact)
         touches.append(Touch(contact, found(contact.tip), None if touched is None else found(touched)))
     return lines, touches
 
@@ -170,21 +162,6 @@ def check_in_plane(system: Any) -> None:
         kinds = sorted({type(body).__name__ for body in system.bodies if body.is_spatial})
         words = "be in the plane, or have a SolidBody or an AxisymmetricBody, to be filmed"
         raise ArgumentError("system", words, system, got=", ".join(kinds))
-
-
-def _touched(contact: PointContact) -> BodyPoint | None:
-    """Return the point that a contact touches at rest, None for a rigid track."""
-    return contact.touched_point if contact.path_body is None else BodyPoint(contact.path_body, contact.at)
-
-
-def _joints(system: Any) -> Iterator[_Joint]:
-    for contact in system.contacts:
-        normal, tangent = contact.frame
-        along = 0.0 if contact.rigid_track is None else contact.at
-        yield _Joint(contact.tip, _touched(contact), along * tangent + contact.gap * normal)
-    for first, *second in map(ends, system.connections):
-        for other in second:
-            yield _Joint(first, other, np.zeros(2))
 
 
 def _thing(point: BodyPoint) -> Any:
@@ -200,30 +177,14 @@ def _abscissa(point: BodyPoint) -> float:
 
 
 def _offset(point: BodyPoint) -> Array:
-    """Return the place of a point relative to the drawn thing that it belongs to [m]."""
-    return _abscissa(point) * point.body.axes[0] if _thing(point) is point.body else np.zeros(2)
+    """Return the place of a point relative to the drawn thing that it belongs to [m], shape (3,)."""
+    body: Any = point.body
+    return np.asarray(body.offset(point.position)) if _thing(point) is body else np.zeros(3)
 
 
-def _origins(joints: list[_Joint]) -> dict[Any, Array]:
-    """Return the places of all drawn things [m]."""
-    found: dict[Any, Array] = {}
-    left = list(joints)
-    while left:
-        # A group that is joined to nothing placed so far starts where it would be alone.
-        known = (
-            k
-            for k, one in enumerate(left)
-            if one.second is None or {_thing(one.first), _thing(one.second)} & found.keys()
-        )
-        joint = left.pop(next(known, 0) if found else 0)
-        away = joint.away + (0.0 if joint.second is None else _offset(joint.second)) - _offset(joint.first)
-        if joint.second is None:
-            found.setdefault(_thing(joint.first), away)
-        elif _thing(joint.first) in found:
-            found.setdefault(_thing(joint.second), found[_thing(joint.first)] - away)
-        else:
-            found[_thing(joint.first)] = found.setdefault(_thing(joint.second), np.zeros(2)) + away
-    return found
+def _origins(system: Any) -> dict[Any, Array]:
+    """Return the places of all drawn things of a system in the plane [m], shape (2,) each."""
+    return {thing: place[:2] for thing, place in origins_of(joints_of(system), _thing, _offset, {}).items()}
 
 
 def _line(thing: Any, origin: Array, points: list[BodyPoint], system: Any) -> Line:

@@ -12,14 +12,15 @@ import numpy as np
 import pytest
 
 import stridula as st
+from stridula.acoustics import equivalent_sources, surface_pressures
+from stridula.acoustics.distances import distances_to
 from stridula.acoustics.fits import fits_of
 from stridula.acoustics.flat_patches import patch_integrals
-from stridula.acoustics.free_bodies import distances_to
 from stridula.acoustics.free_responses import free_responses
 from stridula.acoustics.redriven import redriven
 from stridula.acoustics.ring_sources import RingSources
 from stridula.acoustics.surface_pressures import SurfacePressures
-from stridula.bodies import ring_surfaces
+from stridula.bodies import ring_surfaces, solid_surfaces
 from stridula.bodies.body_surfaces import RingSurface, surface_of
 from stridula.bodies.cut_elements import cut_into_tetrahedra
 from stridula.bodies.solid_surfaces import cut_faces
@@ -244,6 +245,40 @@ def test_thin_meshed_bodies_sound_as_the_same_bodies_of_revolution(thickness, di
         known, found = (open_air.heard(one, wavenumber, ears) for one in (rings, mesh))
         # 0.3 dB: both have errors of some 3 % at edges.
         np.testing.assert_allclose(np.abs(found), np.abs(known), rtol=0.035)
+
+
+@pytest.mark.parametrize("wave", [10.0, 40.0])
+def test_a_thin_surface_sounds_as_thicker_ones(wave, monkeypatch):
+    """With a thickness of a thirtieth and of a tenth of the width of its patches, for modes of the same amplitude."""
+    monkeypatch.setattr(solid_surfaces, "MOST", 200)
+    place, known = np.array([[0.1, 0.5, 0.1]]), None
+    for thickness in (3e-3, 1e-3):
+        plate = st.ModalPlate(STEEL, thickness, 0.3, 0.25, (1, 1))
+        surface = SurfacePressures(plate.surface())
+        found = np.abs(open_air.heard(surface, wave, place)[0, 0]) / plate.amplitude
+        assert known is None or found == pytest.approx(known, rel=0.03)
+        known = found
+
+
+def test_equations_too_ill_for_single_precision_are_solved_in_double(monkeypatch):
+    """Those of a foil with wide patches, whose normal equations have no Cholesky factors in single precision."""
+    monkeypatch.setattr(solid_surfaces, "MOST", 200)
+    surface = SurfacePressures(st.ModalPlate(STEEL, 3e-5, 0.3, 0.25, (2, 2)).surface())
+    asked: list[tuple] = []
+    solved = surface_pressures.least_squares
+    monkeypatch.setattr(surface_pressures, "least_squares", lambda *given: asked.append(given) or solved(*given))
+    (pressures,) = surface.fit(0.0).strengths
+    ((matrix, wanted),) = asked
+    assert pressures.dtype == matrix.dtype == np.complex64
+    with pytest.raises(np.linalg.LinAlgError):
+        equivalent_sources._by_normal_equations(matrix, wanted, 0.0)
+    known = np.linalg.solve(matrix.astype(complex), wanted)
+    np.testing.assert_allclose(pressures, known, atol=1e-5 * np.abs(known).max())
+
+
+def test_singular_equations_are_refused():
+    with pytest.raises(np.linalg.LinAlgError):
+        equivalent_sources.least_squares(np.zeros((3, 2), dtype=np.complex64), np.ones((3, 1)))
 
 
 def test_patches_in_closed_form_are_the_integral_over_points():

@@ -68,3 +68,23 @@ def test_a_mass_keeps_its_weight():
     np.testing.assert_allclose(
         mass.trace("centre") @ mass.trace("centre").T, np.diag([1.0, 1.0, 0.0]) / 0.5, atol=1e-15
     )
+
+
+def test_with_an_origin_it_has_its_surface_there():
+    """The surface of the beam in its own plane, turned and shifted."""
+    turn, place = Rotation.random(random_state=7).as_matrix(), np.array([0.3, -0.2, 0.1])
+    body = st.ModalBody.placed(ROD, {"tip": "tip", "end": 0.3}, turn[:, 0], turn[:, 1], origin=place)
+    known, found = ROD.surface(), body.surface()
+    np.testing.assert_allclose((found.points - place) @ turn, known.points, atol=1e-15)
+    np.testing.assert_allclose(found.normals @ turn, known.normals, atol=1e-14)
+    np.testing.assert_array_equal(found.shapes, known.shapes)
+    np.testing.assert_allclose((found.corners.reshape(-1, 3) - place) @ turn, known.corners.reshape(-1, 3), atol=1e-15)
+    np.testing.assert_allclose(body.at("tip").place, place)
+    np.testing.assert_allclose(body.at("end").place, place + 0.3 * turn[:, :2] @ ROD.axes[0])
+    assert body.has_surface
+    assert not st.ModalBody.placed(ROD, {"tip": "tip"}).has_surface
+    for given in ((0.0, 1.0), [[0.0, 0.0, 0.0]]):
+        with pytest.raises(st.ArgumentError, match=r"^origin must be three numbers"):
+            st.ModalBody.placed(ROD, {"tip": "tip"}, origin=given)
+    with pytest.raises(st.ArgumentError, match=r"^origin must be three numbers, of a beam or a plate"):
+        st.ModalBody.placed(st.PointMass(1.0), {"centre": "centre"}, origin=place)

@@ -10,14 +10,15 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array, in_space
-from ..bodies import BodyPoint
+from ..bodies import BodyPoint, is_track
 from ..checks import ArgumentError, instance, listed
 from ..declared import check_declared
 from ..records.checked import record
 from ..records.probes import DIRECTION
 from .air import Air
 from .driven import FASTEST, LEAD, DrivenModes, Modes, respond
-from .free_bodies import bodies_sound, check_in_open_air, ends_of
+from .free_bodies import bodies_sound, ends_of
+from .open_surfaces import open_surface
 from .panels import Panel
 from .recorded import Pressing, sampled
 from .redriven import Moved
@@ -78,7 +79,7 @@ def bridged_sound(
     """
     start, interval, force = _force(run, bridge.probe)
     body: Any = bridge.point.body
-    if not getattr(body, "has_surface", False):
+    if is_track(body) or not (body.is_spatial and getattr(body, "has_surface", False)):
         try:
             return panel_sound(
                 lambda panel: _pressed(bridge, panel, start, interval, force),
@@ -91,21 +92,22 @@ def bridged_sound(
             )
         except ArgumentError as error:
             raise error.renamed("point" if error.argument == "track" else error.argument) from None
-    check_in_open_air(baffled)
+    if baffled:
+        raise ArgumentError("baffled", "be False, or left out, for bodies in space", baffled)
     if body.modes().turning is not None:
         raise ArgumentError("point", "be on a body that does not turn", bridge.point)
     # Any direction perpendicular to the force.
     aside = np.cross(bridge.along, np.eye(3)[int(np.abs(bridge.along).argmin())])
     name = getattr(body, "name", "") or type(body).__name__
-    pressure, time, places, attributes, moved = bodies_sound(
-        lambda: _moved(bridge, name, start, interval, force),
-        {name: body},
+    pressure, time, places, attributes, motions = bodies_sound(
+        lambda: {name: _moved(bridge, name, start, interval, force)},
+        [open_surface(name, body.surface(), body.modes(), np.zeros(3))],
         (bridge.along, aside / np.linalg.norm(aside)),
         listener,
         air,
         sample_rate,
     )
-    notes = [attributes["notes"], *ends_of({name: body}, moved)]
+    notes = [attributes["notes"], *ends_of({name: body.modes()}, motions[name])]
     return pressure, time, places, attributes | {"notes": "; ".join(filter(None, notes))}
 
 

@@ -81,7 +81,23 @@ def least_squares(matrix: Array, wanted: Array, held_back: float = 0.0) -> Array
     -------
     ndarray, shape (unknowns, sides)
         In the precision of the matrix.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If the equations do not determine the unknowns in double precision.
     """
+    try:
+        return _by_normal_equations(matrix, wanted, held_back)
+    except np.linalg.LinAlgError:
+        if matrix.dtype != np.complex64:
+            raise
+        # Normal equations square the condition: above some thousands, the seven digits of single precision are lost.
+        return _by_normal_equations(matrix.astype(complex), wanted, held_back).astype(matrix.dtype)
+
+
+def _by_normal_equations(matrix: Array, wanted: Array, held_back: float) -> Array:
+    """Return the least-squares solution of equations, by Cholesky factors of their normal equations."""
     solve = scipy.linalg.cho_solve
     # In real numbers, as products of a matrix with itself take half the time and let other threads run.
     parts = np.concatenate([matrix.real, matrix.imag])

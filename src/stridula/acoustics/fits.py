@@ -18,14 +18,26 @@ from ..bodies.body_surfaces import BodySurface
 from ..cache import keep, key, recall
 from .equivalent_sources import Fit, Radiator
 from .ring_sources import RingSources
+from .sheets import Sheet, SheetDipoles
 from .surface_pressures import SurfacePressures
 
 # By the form of the surface.
-RADIATORS: dict[str, Callable[[Any], Radiator]] = {"rings": RingSources, "points": SurfacePressures}
+RADIATORS: dict[str, Callable[[Any], Radiator]] = {
+    "rings": RingSources,
+    "points": SurfacePressures,
+    "sheet": SheetDipoles,
+}
 # Files whose code fits depend on.
-SOURCES = ("equivalent_sources.py", "ring_sources.py", "surface_pressures.py", "flat_patches.py", "fits.py")
-# Time taken by fits above which they are cached [s].
-WORTH = 1.0
+SOURCES = (
+    "equivalent_sources.py",
+    "ring_sources.py",
+    "surface_pressures.py",
+    "flat_patches.py",
+    "sheets.py",
+    "fits.py",
+)
+# Time taken by fits above which they are cached [s], and largest size of cached fits [bytes].
+WORTH, LARGEST = 1.0, 125_000_000
 
 
 class Fits:
@@ -33,11 +45,11 @@ class Fits:
 
     Parameters
     ----------
-    surface : PointSurface or RingSurface
+    surface : PointSurface, RingSurface or Sheet
         The surface of the body.
     """
 
-    def __init__(self, surface: BodySurface) -> None:
+    def __init__(self, surface: BodySurface | Sheet) -> None:
         self.radiator = RADIATORS[surface.form](surface)
         self.name = key([_code(), surface.form.encode(), *surface.content])
         self.known: dict[float, Fit] | None = None
@@ -58,14 +70,16 @@ class Fits:
         return [self.known[one] for one in wavenumbers]
 
     def keep(self) -> None:
-        """Cache the fits for other processes, if they took long enough."""
+        """Cache the fits for other processes, if they took long enough and are not too large."""
         if self.known and self.took > WORTH:
-            keep(self.name, _arrays(self.known))
+            arrays = _arrays(self.known)
+            if sum(one.nbytes for one in arrays.values()) <= LARGEST:
+                keep(self.name, arrays)
             self.took = 0.0
 
 
 @lru_cache(maxsize=8)
-def fits_of(surface: BodySurface) -> Fits:
+def fits_of(surface: BodySurface | Sheet) -> Fits:
     """Return the fits of a body by its surface; those of the latest bodies are kept."""
     return Fits(surface)
 

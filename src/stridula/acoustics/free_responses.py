@@ -11,6 +11,7 @@ from ..bodies.body_surfaces import BodySurface
 from .air import Air
 from .delays import Response
 from .fits import fits_of
+from .sheets import Sheet
 
 # Frequency above which responses are zero, over the bandwidth.
 STOP = 1.2
@@ -47,7 +48,7 @@ class Sent:
 
 
 def free_responses(
-    surface: BodySurface,
+    surface: BodySurface | Sheet,
     places: Array,
     distances: Array,
     air: Air,
@@ -64,7 +65,7 @@ def free_responses(
 
     Parameters
     ----------
-    surface : PointSurface or RingSurface
+    surface : PointSurface, RingSurface or Sheet
         The surface of the body.
     places : ndarray, shape (listeners, 3)
         Places of the listeners [m].

@@ -13,7 +13,7 @@ from .plane_sound import check_plane, plane_bodies
 def hearable(system: System) -> list[Any]:
     """Return the bodies of a system whose sound `radiate` can compute.
 
-    In space these have a surface; in the plane they are flat tracks and slim beams.
+    In space these have a surface, plates and beams among them; in the plane they are flat tracks and slim beams.
     """
     return bodies_heard(system) if system.is_spatial else plane_bodies(system)
 

@@ -78,14 +78,25 @@ def check_in_front(listeners: Array) -> None:
             raise ArgumentError("listener", "be in front of the baffle, z above 0", got=f"z = {place[2]:g} {where}")
 
 
-def check_off_beam(listeners: Array, length: float, radius: float) -> None:
-    """Raise ValueError if a listener is on a beam of a length whose section lies within a radius of its axis."""
-    for place in listeners:
+def check_off_beam(listeners: Array, length: float, radius: float, as_given: Array | None = None) -> None:
+    """Raise ValueError if a listener is on a beam of a length whose section lies within a radius of its axis.
+
+    Messages name the listeners as in `as_given`, if given.
+    """
+    for place, one in zip(listeners, listeners if as_given is None else as_given, strict=True):
         along = place[0] - min(max(place[0], 0.0), length)
         distance = float(np.hypot(along, np.hypot(place[1], place[2])))
         if distance <= radius:
             raise ArgumentError(
                 "listener",
                 f"be farther than {at_least(radius, 4)} m from the beam's axis",
-                got=f"{tuple(place.tolist())} at {at_most(distance, 4)} m",
+                got=f"{tuple(one.tolist())} at {at_most(distance, 4)} m",
             )
+
+
+def check_off_panel(distances: Array, nearest: float, as_given: Array) -> None:
+    """Raise ValueError if a listener, named as in `as_given`, is nearer to a plate than allowed [m]."""
+    for place, distance in zip(as_given, distances, strict=True):
+        if distance < nearest:
+            words = f"be at least {at_least(nearest, 3)} m from the plate"
+            raise ArgumentError("listener", words, got=f"{tuple(place.tolist())} at {at_most(distance, 3)} m")

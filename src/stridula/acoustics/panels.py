@@ -54,6 +54,12 @@ class Panel:
             shapes = shapes * _sines(y - self.edge, across)
         return np.broadcast_to(shapes, (*shapes.shape[:-1], len(along)))
 
+    def distances(self, places: Array) -> Array:
+        """Return the distances from places x, y, z to the nearest points of the panel [m], shape (places,)."""
+        low = np.array([0.0, self.edge])
+        away = places[:, :2] - np.clip(places[:, :2], low, low + np.array([self.length, self.width]))
+        return np.asarray(np.hypot(np.hypot(away[:, 0], away[:, 1]), places[:, 2]))
+
     def only(self, modes: Any) -> Panel:
         """Return the panel with only the chosen modes, an index or a slice."""
         return replace(
@@ -81,6 +87,13 @@ def panel_of(track: Any) -> Panel:
         If it is no such track, or a beam whose section is no rectangle.
     """
     raise ArgumentError("track", "be a ModalBeam or a ModalPlate", track)
+
+
+def is_flat(body: Any) -> bool:
+    """Return whether a body has a flat surface: a plate, or a beam whose section is a rectangle."""
+    if panel_of.dispatch(type(body)) is panel_of.dispatch(object):
+        return False
+    return hasattr(getattr(body, "section", body), "width")
 
 
 @panel_of.register

@@ -22,18 +22,16 @@ from .air import Air
 from .free_bodies import chosen, convolved, lacks
 from .listeners import HEIGHT, SPACING, check_in_front, ears, listeners_of
 from .panels import panel_of
-from .recorded import sampled
 from .recorded_motion import RecordedModes, recorded_motion
 from .redriven import redriven
 from .resampling import bandwidth_of, ratio_of, resample
 from .responses import slim_below
 from .slim_beams import SlimBeam, slim_beam
 from .track_sound import track_sound
+from .travels import travel_note, travel_of
 
 # Tracks whose heights differ by less lie in one plane [m].
 LEVEL = 1e-9
-# Sliding distance above which a note states that a beam is heard from its mean place [m].
-FAR = 0.01
 
 
 @dataclass(frozen=True)
@@ -215,44 +213,32 @@ def _of_beams(
     for body in beams:
         first, last = moved.spans[system.body_name(body)]
         numbers = first + np.flatnonzero(moved.accelerations[first:last].any(axis=1))
-        travel, reach = _travel(run, system, body)
-        beam = slim_beam(body, system.is_held(body), numbers - first, outlines[body].place + np.array([travel, 0.0]))
-        beam.check(seen)
+        travel, reach = travel_of(run, system, body)
+        x, y = outlines[body].place
+        # Along world x, across the plane and along world y.
+        along, across = (np.array([axis[0], 0.0, axis[1]]) for axis in body.axes)
+        frame, origin = np.array([along, [0.0, 1.0, 0.0], across]), np.array([x + travel[0], 0.0, y + travel[1]])
+        beam = slim_beam(body, system.is_held(body), numbers - first, frame, origin)
+        distances.append(beam.distances(seen))
         for places in images if numbers.size else []:
             responses = beam.responses(places, air, moved.interval, shift, bandwidth)
             pressure += convolved(responses, moved, numbers)
-        distances.append(beam.distances(seen))
-        notes += _said(system, body, beam, travel, reach, air)
+        notes += _said(system, body, beam, reach, air)
     sounding = resample(pressure, ratio)
     times = np.arange(sounding.shape[1]) * moved.interval / float(ratio)
     nearest = np.min(distances, axis=0)
     sounding[times < nearest[:, None] / air.speed] = 0.0
     modes = sum(last - first for first, last in (moved.spans[system.body_name(body)] for body in beams))
-    notes += lacks(system, beams, silent, moved)
+    notes += lacks(system, beams, silent, [moved])
     attributes = {"bandwidth": bandwidth, "modes": modes, "baffled": int(wall is not None), "motion": moved.words}
     return sounding, moved.start + times, {**attributes, "distance": nearest.tolist(), "notes": "; ".join(notes)}
 
 
-def _travel(run: xr.Dataset, system: System, body: Any) -> tuple[float, float]:
-    """Return the mean displacement of a body from its start, and the range of its places [m]."""
-    for number, contact in enumerate(system.contacts):
-        still = contact.path_body is not None or (contact.rigid_track is not None and contact.rigid_track.is_still)
-        if contact.tip.body == body and still:
-            *_, (places,) = sampled(run, "contact_position")
-            return float(places[number].mean()) - contact.at, float(np.ptp(places[number]))
-    return 0.0, 0.0
-
-
-def _said(system: System, body: Any, beam: SlimBeam, travel: float, reach: float, air: Air) -> list[str]:
+def _said(system: System, body: Any, beam: SlimBeam, reach: float, air: Air) -> list[str]:
     """Return notes on a beam."""
     name = system.body_name(body)
     notes = [f"{name}: a line of dipoles, slim below {slim_below(body, air):.4g} Hz"]
-    if reach > FAR:
-        notes.append(f"{name}: it slides over {reach:.3g} m and is heard from the middle of its way")
-    imposed = system.imposed_velocity
-    if system.is_held(body) and imposed is not None and imposed.history.kind != "constant":
-        notes.append(f"{name}: changes of its imposed velocity as a whole are not included")
-    return notes
+    return [*notes, *travel_note(name, reach)]
 
 
 def _added(parts: Sequence[Part]) -> tuple[Array, dict[str, Any]]:

@@ -16,7 +16,7 @@ from ..records.variables import described
 from ..system import System
 from .air import Air
 from .bridges import Bridge, bridged_sound
-from .free_bodies import check_in_open_air, free_sound
+from .free_bodies import free_sound
 from .plane_sound import plane_sound
 from .track_sound import track_sound
 
@@ -34,15 +34,19 @@ def radiate(
     """Return the sound pressure of a track, or of the bodies of a system, in time.
 
     The track, with all its bending modes, is driven again by the normal forces of the record at their places. Its sound
-    follows from Rayleigh's integral with exact travel times (in a rigid baffle) or from a line of dipoles (a beam in
-    free air). Bodies in space are driven again by all forces of the record at their contacts and by the drives of the
-    system, and radiate into open air by equivalent sources within them. Bodies are at rest before the record, and the
+    follows from Rayleigh's integral with exact travel times (in a rigid baffle), from a sheet of dipoles (a plate in
+    free air) or from a line of dipoles (a beam in free air). Bodies in space are driven again by all forces of the
+    record at their contacts and by the drives of the system, and radiate into open air: bodies of revolution by
+    equivalent sources within them, meshed bodies by the pressure on their surface, plates as sheets of dipoles, beams
+    as lines of dipoles if they are slim at all frequencies of their modes, otherwise by the pressure on their surface.
+    Bodies are at rest before the record, and the
     air does not act back on them.
 
     Bodies whose motion is recorded, see `ModalMotion`, move as recorded and are not driven again.
 
     The same holds for the tracks of a system in the plane. Its beams, such as the slider, are lines of dipoles driven
     again by all forces at their contacts and by the drives; a baffle that tracks are flush with reflects their sound.
+    In space there is a baffle only with ``baffled=True``: plates and beams of rectangular section are flush with it.
 
     Parameters
     ----------
@@ -52,19 +56,21 @@ def radiate(
     track : ModalBeam, ModalPlate, System or Bridge
         Source of the sound. A track need not be the body of the run, but must reach as far as it is pressed. For a
         system, that of the run, the sound is the sum over its bodies: in space over all that have a surface, in the
-        plane over tracks and beams. For a bridge, it is that of the body driven by the recorded force on the support of
-        a string.
+        plane over tracks and slim beams. For a bridge, it is that of the body driven by the recorded force on the
+        support of a string.
     listener : tuple of float, or sequence of tuples, optional
         Places of the listeners, x, y, z [m]: x along the track from its left end, y across it in its surface, from the
         axis of a beam or from the first edge of a plate, z above it, on the slider's side. A pair of ears a metre above
         the middle of the track if left out. A track in space has the same axes; a system in the plane has those of its
         first track, or, without a track, world x, across the plane, and world y. For a system in space they are the
         world axes; the ears are then a metre above the middle of the bodies, on the side of the first contact's tip.
+        Plates and beams in space are placed by the bodies that they touch if these have places in the world; otherwise
+        the track of the first contact begins at the origin.
     bodies : sequence of AxisymmetricBody, SolidBody, ModalBeam, ModalPlate or FiniteElementBeam, optional
         Bodies of a system to include; all that can be heard if left out.
     baffled : bool, optional
-        Whether the surface of a track is flush with an infinite rigid wall, the default; otherwise it is a slim beam in
-        free air. Bodies in space are in open air, and so are beams of a system in the plane without a track.
+        Whether flat surfaces are flush with an infinite rigid wall. By default those of tracks are, except for bodies
+        in space, which are in open air, and for beams of a system in the plane without a track.
     air : Air, optional
         The air, `Air()` if left out.
     sample_rate : float, optional
@@ -77,16 +83,16 @@ def radiate(
         ``attrs`` have the bandwidth [Hz], up to which the sound is complete and above which it is cut off, the air, the
         distances [m] to the nearest point of the track, and notes on what is missing. ``motion`` is "recorded", "driven
         again", or both. For a system they have the names of the bodies and, as ``fit_error``, for each the largest
-        relative error of its sources in the normal motion of a mode over the surface, at the mode's own frequency;
-        notes state it where it is above 5 %.
+        relative error of its sources in the normal motion of a mode over the surface, at the mode's own frequency, nan
+        for plates and lines of dipoles; notes state it where it is above 5 %.
 
     Raises
     ------
     ValueError
         If the record diverged, holds NaN or fewer than 2 samples, or presses beyond the track; if its track was changed
-        while it was played; if a listener is in the surface, behind the baffle, on the beam or in a body; if the sample
-        rate is more than the record supports, or too low; if a body has no surface, or the record is not one of the
-        system.
+        while it was played; if a listener is in the surface, behind the baffle, on the beam or in a body; if flat
+        bodies do not lie in one baffle, or others behind it; if the sample rate is more than the record supports, or
+        too low; if a body has no surface, or the record is not one of the system.
     """
     if baffled is not None:
         instance("baffled", baffled, bool)
@@ -110,8 +116,7 @@ def _of_a_system(
 ) -> Sound:
     if not system.is_spatial:
         return plane_sound(run, system, listener, bodies, baffled, air, sample_rate)
-    check_in_open_air(baffled)
-    return free_sound(run, system, listener, bodies, air, sample_rate)
+    return free_sound(run, system, listener, bodies, baffled, air, sample_rate)
 
 
 @_sound.register

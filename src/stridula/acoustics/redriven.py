@@ -103,9 +103,10 @@ def redriven(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = Non
     rows, signals = _of_contacts(flat, normal, tangential)
     if any(one.circle is not None for one in flat.contacts):
         rows, signals = _gone_round(flat, rows, signals, _places(given, system))
-    if bodies is not None and flat.coupled:
+    if any(contact.path_body is not None for contact in system.contacts):
         own = _on_paths(flat, system, _places(given, system), normal, tangential)
-        rows, signals = np.concatenate([rows, np.eye(len(own))]), np.concatenate([signals, own])
+        driven = np.flatnonzero(own.any(axis=1))
+        rows, signals = np.concatenate([rows, np.eye(len(own))[driven]]), np.concatenate([signals, own[driven]])
     loads = _of_drives(flat, start, interval, min(steps, MOST_STEPS), samples)
     if system.initial_equilibrium is not None:
         # It has been in equilibrium before.
@@ -210,9 +211,10 @@ def _gone_round(flat: Assembly, rows: Array, signals: Array, places: Array) -> t
 
 
 def _on_paths(flat: Assembly, system: System, places: Array, normal: Array, tangential: Array) -> Array:
-    """Return the forces on the modes of tracks that springs couple to others [N kg^(-1/2)], shape (modes, samples)."""
+    """Return the forces on the modes of tracks along which contacts move [N kg^(-1/2)], shape (modes, samples)."""
     found = np.zeros((flat.mode_count, normal.shape[1]))
-    for contact, place, pressed, rubbed in zip(system.contacts, places, normal, tangential, strict=True):
+    along = tangential[:, 0] if tangential.ndim == 3 else tangential
+    for contact, place, pressed, rubbed in zip(system.contacts, places, normal, along, strict=True):
         body = contact.path_body
         if body is None:
             continue

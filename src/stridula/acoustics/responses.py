@@ -2,22 +2,44 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
 from ..arrays import Array
+from ..bodies import ModalPlate
+from ..bodies.body_surfaces import HIGHEST as FINE_ENOUGH
 from .air import Air
-from .delays import Response, interpolation
+from .delays import interpolation
 from .dipoles import dipole_response, moved_area
-from .listeners import check_in_front, check_off_beam
+from .distances import NEAREST
+from .free_responses import STOP_BEYOND, WHOLE_BEYOND
+from .listeners import check_in_front, check_off_beam, check_off_panel
+from .open_surfaces import HIGHEST, Heard, by_fits
 from .panels import Panel, line_of, panel_of
 from .rayleigh import baffled_response
+from .sheets import Sheet, sheet_of
 from .surfaces import surface_of
 
 
 class Way(Protocol):
-    """Radiation of a track: flush with a baffle, or as a slim beam in free air."""
+    """Radiation of a track: flush with a baffle, or in free air.
+
+    Attributes
+    ----------
+    most : float
+        Largest bandwidth of its sound [Hz].
+    in_a_wall : bool
+        Whether it is flush with a rigid infinite wall.
+    nearest : float
+        Smallest distance of a listener [m].
+    """
+
+    most: ClassVar[float]
+    in_a_wall: ClassVar[bool]
+    nearest: float
 
     @property
     def panel(self) -> Panel:
@@ -26,28 +48,29 @@ class Way(Protocol):
     def check(self, listeners: Array) -> None:
         """Raise ValueError if a listener is at a place without sound, inside a body or behind the baffle."""
 
-    def responses(
-        self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float
-    ) -> list[Response]:
-        """Return the responses of modes, by number in the panel, at every listener, `shift` samples later."""
-
-    def notes(self, air: Air) -> list[str]:
-        """Return notes on its validity."""
+    def heard(self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
+        """Return the sound of modes, by number in the panel, at every listener, `shift` samples later."""
 
 
-def way_of(track: Any, baffled: bool) -> Way:
-    """Return how a track radiates: in a baffle, or as a slim beam in free air.
+def way_of(track: Any, baffled: bool, name: str = "") -> Way:
+    """Return how a track radiates: in a baffle, or in free air as a thin plate or a slim beam.
 
     Raises
     ------
     ValueError
         If the track cannot radiate in this way.
     """
-    return Baffled(panel_of(track)) if baffled else SlimLine(track, line_of(track))
+    if baffled:
+        return Baffled(panel_of(track))
+    return Thin(track, name or track.name) if hasattr(track, "track_line") else SlimLine(track, line_of(track))
 
 
 class Baffled:
     """A track that is flush with a rigid infinite wall."""
+
+    most: ClassVar[float] = np.inf
+    in_a_wall: ClassVar[bool] = True
+    nearest = 0.0
 
     def __init__(self, panel: Panel) -> None:
         self.panel = panel
@@ -56,42 +79,72 @@ class Baffled:
         """Raise ValueError if a listener is in the wall or behind it."""
         check_in_front(listeners)
 
-    def responses(
-        self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float
-    ) -> list[Response]:
+    def heard(self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
         """Return the responses at every listener."""
         panel, kernel = self.panel.only(modes), interpolation(bandwidth * interval)
         surfaces = [surface_of(panel, listener, 2.0 * np.pi * bandwidth / air.speed) for listener in listeners]
-        return [
+        responses = [
             baffled_response(surface, listener, air, interval, kernel, shift)
             for surface, listener in zip(surfaces, listeners, strict=True)
         ]
-
-    def notes(self, air: Air) -> list[str]:
-        """Return no notes: it is always valid."""
-        return []
+        return Heard(modes, responses)
 
 
 class SlimLine:
     """A beam in free air as a line of dipoles."""
 
+    most: ClassVar[float] = np.inf
+    in_a_wall: ClassVar[bool] = False
+
     def __init__(self, beam: Any, panel: Panel) -> None:
         self.beam, self.panel, self.area = beam, panel, moved_area(beam.section)
+        self.nearest = beam.section.across / 2.0
 
     def check(self, listeners: Array) -> None:
         """Raise ValueError if a listener is on the beam."""
-        check_off_beam(listeners, self.beam.length, self.beam.section.across / 2.0)
+        check_off_beam(listeners, self.beam.length, self.nearest)
 
-    def responses(
-        self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float
-    ) -> list[Response]:
-        """Return the responses at every listener."""
+    def heard(self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
+        """Return the responses at every listener, with a note on the frequency up to which they are valid."""
         panel, kernel = self.panel.only(modes), interpolation(bandwidth * interval)
-        return [dipole_response(panel, self.area, one, air, interval, kernel, shift) for one in listeners]
+        responses = [dipole_response(panel, self.area, one, air, interval, kernel, shift) for one in listeners]
+        note = f"a line of dipoles: the beam is slim below {slim_below(self.beam, air):.4g} Hz"
+        return Heard(modes, responses, notes=[note])
 
-    def notes(self, air: Air) -> list[str]:
-        """Return a note on the frequency up to which it is valid."""
-        return [f"a line of dipoles: the beam is slim below {slim_below(self.beam, air):.4g} Hz"]
+
+class Thin:
+    """A thin plate in free air as a sheet of dipoles."""
+
+    most: ClassVar[float] = HIGHEST
+    in_a_wall: ClassVar[bool] = False
+
+    def __init__(self, plate: ModalPlate, name: str) -> None:
+        self.plate, self.name, self.panel = plate, name or "the plate", panel_of(plate)
+        self.nearest = NEAREST * float(np.hypot(plate.length, plate.width))
+
+    def check(self, listeners: Array) -> None:
+        """Raise ValueError if a listener is on the plate."""
+        check_off_panel(self.panel.distances(listeners), self.nearest, listeners)
+
+    def heard(self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
+        """Return the responses at every listener, with a note if the sheet has too few points for the bandwidth."""
+        sheet, distances = _sheet(self.plate), self.panel.distances(listeners)
+        numbers = np.arange(len(sheet.parities))
+        frequency = self.panel.angular_frequency[numbers] / (2.0 * np.pi)
+        sent = by_fits(self.name, sheet, numbers, frequency, listeners, distances, air, interval, shift, bandwidth)
+        if sheet.frequency < min(bandwidth, WHOLE_BEYOND * float(frequency.max())):
+            note = f"{self.name}: the points of its sheet are enough only up to {sheet.frequency:.4g} Hz"
+            sent = replace(sent, notes=[*sent.notes, note])
+        return sent.only(modes)
+
+
+@lru_cache(maxsize=8)
+def _sheet(plate: ModalPlate) -> Sheet:
+    """Return a plate as a sheet; the same object each time, as fits are cached by it."""
+    panel = panel_of(plate)
+    frequency = panel.angular_frequency / (2.0 * np.pi)
+    low = panel.only(frequency <= max(FINE_ENOUGH, float(frequency[0])))
+    return sheet_of(low, min(FINE_ENOUGH, STOP_BEYOND * float(low.angular_frequency.max()) / (2.0 * np.pi)))
 
 
 def slim_below(beam: Any, air: Air) -> float:

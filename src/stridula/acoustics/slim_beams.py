@@ -1,8 +1,8 @@
-"""Slim beams anywhere in a system in the plane, as lines of dipoles."""
+"""Slim beams anywhere in the plane or in space as lines of dipoles."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -28,8 +28,11 @@ class SlimBeam:
         The modes that are heard.
     wavenumbers : ndarray, shape (modes, 2)
         Wavenumbers of bending at their frequencies, along it and across [rad/m].
-    origin : ndarray, shape (2,)
-        Place of its abscissa 0 in the plane [m].
+    frame : ndarray, shape (3, 3)
+        Directions along it, perpendicular to it and to its bending, and across it along its bending, in the axes of
+        places.
+    origin : ndarray, shape (3,)
+        Place of its abscissa 0 in these axes [m].
     """
 
     width: ClassVar[float] = 0.0
@@ -38,6 +41,7 @@ class SlimBeam:
     held: bool
     numbers: Array
     wavenumbers: Array
+    frame: Array
     origin: Array
 
     @property
@@ -51,22 +55,25 @@ class SlimBeam:
         rows = [across @ self.body.trace(float(place), self.held) for place in x]
         return np.array(rows)[:, self.numbers]
 
+    def only(self, modes: Array) -> SlimBeam:
+        """Return it with some of its modes, by their indices in `numbers`."""
+        return replace(self, numbers=self.numbers[modes], wavenumbers=self.wavenumbers[modes])
+
     def beside(self, places: Array) -> Array:
-        """Return listeners, given along the track, across it and above it, in its own axes, shape (listeners, 3).
-
-        These are along it, perpendicular to the plane, and across it in the plane.
-        """
-        along, across = self.body.axes
-        away = places[:, [0, 2]] - self.origin
-        return np.column_stack([away @ along, places[:, 1], away @ across])
-
-    def check(self, places: Array) -> None:
-        """Raise ValueError if a listener is on the beam."""
-        check_off_beam(self.beside(places), self.length, self.body.section.across / 2.0)
+        """Return listeners in its own axes, shape (listeners, 3)."""
+        return np.asarray((places - self.origin) @ self.frame.T)
 
     def distances(self, places: Array) -> Array:
-        """Return the distances of listeners to the nearest points of its axis [m]."""
-        x, y, z = self.beside(places).T
+        """Return the distances of listeners to the nearest points of its axis [m].
+
+        Raises
+        ------
+        ValueError
+            If a listener is on the beam.
+        """
+        own = self.beside(places)
+        check_off_beam(own, self.length, self.body.section.across / 2.0, places)
+        x, y, z = own.T
         return np.asarray(np.sqrt((x - np.clip(x, 0.0, self.length)) ** 2 + y**2 + z**2))
 
     def responses(self, places: Array, air: Air, interval: float, shift: float, bandwidth: float) -> list[Response]:
@@ -76,9 +83,9 @@ class SlimBeam:
         return [dipole_response(line, area, one, air, interval, kernel, shift) for one in self.beside(places)]
 
 
-def slim_beam(body: Any, held: bool, numbers: Array, origin: Array) -> SlimBeam:
-    """Return a beam with the modes that are heard, at its place."""
+def slim_beam(body: Any, held: bool, numbers: Array, frame: Array, origin: Array) -> SlimBeam:
+    """Return a beam with the modes that are heard, at its place; arguments are attributes of a `SlimBeam`."""
     section, material = body.section, body.material
     stiff = (material.density * section.area / (material.young * section.second_moment)) ** 0.25
     along = np.sqrt(body.modes(held).angular_frequency[numbers]) * stiff
-    return SlimBeam(body, held, numbers, np.column_stack([along, np.zeros(along.size)]), origin)
+    return SlimBeam(body, held, numbers, np.column_stack([along, np.zeros(along.size)]), frame, origin)

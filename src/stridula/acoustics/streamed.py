@@ -68,7 +68,7 @@ class StreamedSound:
         panel = way.panel.only(kept)
         self.taps = undo_mean(steps)
         bandwidth = bandwidth_of(Fraction(1), 1.0 / interval)
-        (path,) = way.responses(kept, listeners, air, interval, EARLY - 0.5 / steps, bandwidth)
+        (path,) = way.heard(kept, listeners, air, interval, EARLY - 0.5 / steps, bandwidth).responses
         taps = low_pass(Fraction(1), 2.0 * BANDWIDTH, ATTENUATION)
         first = path.first - len(taps) // 2
         # An acceleration is known DEGREE samples after its force.

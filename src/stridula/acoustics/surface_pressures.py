@@ -43,6 +43,8 @@ class _Static:
         Numbers of places and of patches near to each other.
     more_double, more_single : ndarray, shape (pairs,)
         Differences of the integrals over these from those over points.
+    more_bent : ndarray, shape (pairs,)
+        Differences in the part of the integrals of -dG/dn that grows with the square of the wavenumber.
     """
 
     away: Array
@@ -51,13 +53,13 @@ class _Static:
     near: tuple[Array, Array]
     more_double: Array
     more_single: Array
+    more_bent: Array
 
     @property
     def rounded(self) -> _Static:
         """The same in single precision, enough for these well-conditioned matrices."""
-        away, double, single, *more = (
-            one.astype(np.float32) for one in (self.away, self.double, self.single, self.more_double, self.more_single)
-        )
+        pairs = (self.more_double, self.more_single, self.more_bent)
+        away, double, single, *more = (one.astype(np.float32) for one in (self.away, self.double, self.single, *pairs))
         return _Static(away, double, single, self.near, *more)
 
 
@@ -157,8 +159,11 @@ class SurfacePressures:
         double = single * toward / square
         place, patch = np.nonzero(away < NEAR * self._reach)
         near = place, patch
-        more_double, more_single = self._pieces(places, *near)
-        return _Static(away, double, single, near, more_double - double[near], more_single - single[near])
+        of_double, of_single = self._pieces(places, *near)
+        ahead = ((surface.points[patch] - places[place]) * surface.normals[patch]).sum(axis=1)
+        # Of (1 + i k R) exp(-i k R) / R³ over a patch across a thin body, also 1 / R has no value at its middle.
+        more_bent = 0.5 * (ahead * of_single - double[near] * away[near] ** 2)
+        return _Static(away, double, single, near, of_double - double[near], of_single - single[near], more_bent)
 
     def _pieces(self, places: Array, place: Array, patch: Array) -> tuple[Array, Array]:
         """Return the integrals over patches at places in closed form, of -dG/dn and of G, shape (pairs,) each."""
@@ -187,7 +192,6 @@ def _layers(wavenumber: float, static: _Static) -> tuple[Array, Array]:
     single.real, single.imag = static.single * cosine, -static.single * sine
     # -(1 + i k R) exp(-i k R)
     double.real, double.imag = -static.double * (cosine + phase * sine), static.double * (sine - phase * cosine)
-    # The singular part is independent of the wavenumber.
-    double[static.near] -= static.more_double
+    double[static.near] -= static.more_double + float(wavenumber) ** 2 * static.more_bent
     single[static.near] += static.more_single
     return double, single

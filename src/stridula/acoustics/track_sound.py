@@ -95,15 +95,15 @@ def panel_sound(
     panel, motion = way.panel, moved(way.panel)
     recorded = 1.0 / motion.interval
     ratio = ratio_of(sample_rate, recorded, motion.samples)
-    bandwidth = bandwidth_of(ratio, recorded)
+    bandwidth = min(bandwidth_of(ratio, recorded), way.most)
     kept = motion.carried(panel.angular_frequency)
     # Modes that share a sine stand together.
     kept = kept[np.argsort(panel.wavenumbers[kept, 0], kind="stable")]
     shift = (motion.first - motion.start) / motion.interval
-    paths = way.responses(kept, listeners, air, motion.interval, shift, bandwidth)
-    pressure = resample(_sum(kept, motion, paths), ratio)
+    sent = way.heard(kept, listeners, air, motion.interval, shift, bandwidth)
+    pressure = resample(_sum(sent.numbers, motion, sent.responses), ratio)
     time = np.arange(pressure.shape[1]) * motion.interval / float(ratio)
-    distances = _distances(listeners, panel)
+    distances = panel.distances(listeners)
     arrival = (motion.begins or 0.0) + distances / air.speed
     # Earlier than the low-pass reaches before the first arrival, the pressure is rounding.
     early = np.maximum(arrival - REACH * motion.interval / float(ratio), distances / air.speed)
@@ -118,8 +118,10 @@ def panel_sound(
         "distance": distances.tolist(),
         "motion": motion.words,
         **air.attributes,
-        "notes": "; ".join([*notes, *way.notes(air)]),
+        "notes": "; ".join([*notes, *sent.notes]),
     }
+    if np.isfinite(sent.error):
+        attributes["fit_error"] = [sent.error]
     return pressure, motion.start + time, listeners, attributes
 
 
@@ -134,13 +136,6 @@ def _sum(modes: Array, motion: Motion, responses: list[Response]) -> Array:
     for begin in range(several, modes.size, several):
         sound.add(motion.accelerations(modes[begin : begin + several]), slice(begin, begin + several))
     return sound.signals()[:, : motion.samples]
-
-
-def _distances(listeners: Array, panel: Panel) -> Array:
-    """Return the distances [m] of the listeners to the nearest points of the panel."""
-    low = np.array([0.0, panel.edge])
-    away = listeners[:, :2] - np.clip(listeners[:, :2], low, low + np.array([panel.length, panel.width]))
-    return np.asarray(np.hypot(np.hypot(away[:, 0], away[:, 1]), listeners[:, 2]))
 
 
 def _notes(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -77,6 +77,22 @@ class PointSurface:
         """The surface as points: itself."""
         return self
 
+    def only(self, modes: Sequence[int]) -> PointSurface:
+        """Return the surface with some of its modes, by number."""
+        return replace(self, shapes=self.shapes[:, modes])
+
+    def placed(self, frame: Array, origin: Array) -> PointSurface:
+        """Return the surface with its axes along the rows of a frame and its origin at a place [m]."""
+        corners = self.corners.reshape(-1, 3) @ frame + origin
+        return PointSurface(
+            self.points @ frame + origin,
+            self.normals @ frame,
+            self.areas,
+            self.shapes,
+            corners.reshape(self.corners.shape),
+            self.owners,
+        )
+
     @property
     def content(self) -> tuple[bytes, ...]:
         """Content of all arrays, for comparison."""
@@ -119,6 +135,10 @@ class RingSurface:
     def content(self) -> tuple[bytes, ...]:
         """Content of all arrays, for comparison."""
         return _content(self)
+
+    def only(self, modes: Sequence[int]) -> RingSurface:
+        """Return the surface with some of its modes, by number."""
+        return replace(self, shapes=self.shapes[:, modes], orders=self.orders[modes], sides=self.sides[modes])
 
     def round(self, theta: Array) -> Array:
         """Return the cosine or the sine of each mode at angles [rad], shape (..., modes)."""

@@ -10,7 +10,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 import scipy.linalg
 
-from ..arrays import Array
+from ..arrays import Array, in_space
 from ..checks import ArgumentError, instance, within
 from ..declared import Angle, Choice, Count, Frequency, Length, Name, Own, check_declared
 from ..ordinary import check_overflow, of_ordinary_size
@@ -27,7 +27,7 @@ from .finite_elements import (
     element_stiffness,
 )
 from .modes import BodyPoint, Modes, hashed_once
-from .prism_surfaces import beam_surface
+from .prism_surfaces import beam_surface, has_outline
 from .sections import Circle, Material, Rectangle, Section
 
 LARGEST_ELEMENTS = 500
@@ -152,6 +152,10 @@ class FiniteElementBeam(HasCard):
         """Raise ValueError if `position` [m] is not on the beam."""
         within("position", position, 0.0, self.length)
 
+    def offset(self, position: float) -> Array:
+        """Return the place at rest of the point at `position` [m] relative to the tip [m], shape (3,)."""
+        return position * in_space(self.axes[0])
+
     @property
     def axes(self) -> Array:
         """World components of the axial direction e1 (tip to root) and the transverse t1, shape (2, 2)."""
@@ -178,17 +182,22 @@ class FiniteElementBeam(HasCard):
                 known.traces[position] = found
         return found.copy()
 
-    def surface(self, frequency: float = HIGHEST) -> PointSurface:
+    @property
+    def has_surface(self) -> bool:
+        """Whether its section has an outline, a rectangle or a circle, so that it has a surface."""
+        return has_outline(self.section)
+
+    def surface(self, frequency: float = HIGHEST, held_x: bool = False) -> PointSurface:
         """Return the outer surface as points, fine enough for sound up to a frequency [Hz], and how modes move it.
 
-        Its tip is at the origin of the world; nothing holds its root along x.
+        Its tip is at the origin of the world. With `held_x` the modes are those with the root held along x.
 
         Raises
         ------
         ValueError
             If its section is known by its two properties only.
         """
-        return _surface(self, largest_part(frequency))
+        return _surface(self, largest_part(frequency), held_x)
 
     def node_traces(self, held_x: bool = False) -> Array:
         """Return the rows that give x, y and slope of every node, tip first, from the modes, shape (3 nodes, modes)."""
@@ -326,5 +335,5 @@ def _rigid_shapes(beam: FiniteElementBeam, mass: Array, fixed: Array) -> Array:
 
 
 @lru_cache(maxsize=4)
-def _surface(beam: FiniteElementBeam, largest: float) -> PointSurface:
-    return beam_surface(beam, beam.elements, largest)
+def _surface(beam: FiniteElementBeam, largest: float, held_x: bool) -> PointSurface:
+    return beam_surface(beam, beam.elements, largest, held_x)

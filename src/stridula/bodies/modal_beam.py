@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
+from ..arrays import in_space
 from ..checks import ArgumentError, at_least, instance, within
 from ..declared import Count, CountFrom0, Frequency, Length, Name, Own, Tension, check_declared
 from ..ordinary import check_first_modes, check_mode_count, of_ordinary_size
@@ -18,7 +19,7 @@ from .drawn_lines import places_between
 from .modes import Array, BodyPoint, Modes, hashed_once
 from .paths import Path, along_one_angle
 from .planes import InPlane, checked_plane
-from .prism_surfaces import beam_surface
+from .prism_surfaces import beam_surface, has_outline
 from .sections import Circle, Material, Rectangle, Section
 
 
@@ -131,6 +132,10 @@ class ModalBeam(InPlane):
         """Raise ValueError if abscissa `position` [m] is not on the beam."""
         within("position", position, 0.0, self.length)
 
+    def offset(self, position: float) -> Array:
+        """Return the place at rest of abscissa `position` [m] relative to its left end [m], shape (3,)."""
+        return position * in_space(self.axes[0])
+
     @property
     def total_mass(self) -> float:
         """Mass [kg]."""
@@ -173,6 +178,11 @@ class ModalBeam(InPlane):
     def path(self) -> Path:
         """Return the path along which other bodies slide: its axis."""
         return _path(self)
+
+    @property
+    def has_surface(self) -> bool:
+        """Whether its section has an outline, a rectangle or a circle, so that it has a surface."""
+        return has_outline(self.section)
 
     def surface(self, frequency: float = HIGHEST) -> PointSurface:
         """Return the outer surface as points, fine enough for sound up to a frequency [Hz], and how modes move it.

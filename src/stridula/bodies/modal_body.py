@@ -119,6 +119,7 @@ class ModalBody(NamedPoints):
         x: Sequence[float] = (1.0, 0.0, 0.0),
         y: Sequence[float] = (0.0, 1.0, 0.0),
         name: str = "",
+        origin: Sequence[float] | None = None,
     ) -> ModalBody:
         """Return a planar body as a body in space, in any plane.
 
@@ -132,6 +133,9 @@ class ModalBody(NamedPoints):
             World components in space of the plane's world x and y: two unit vectors at right angles.
         name : str, optional
             Name in records; that of the body if left out.
+        origin : sequence of float, optional
+            World place of the tip of a `FiniteElementBeam` or of abscissa 0 of a `ModalBeam` or `ModalPlate` [m]. With
+            it the body has a surface for sound, and its points have places in the world.
 
         Raises
         ------
@@ -149,6 +153,16 @@ class ModalBody(NamedPoints):
         named = {one: getattr(body, one).position for one in body.point_names if body.has_positions}
         rows = {one: axes.T @ body.trace(named.get(place, place)) for one, place in points.items()}
         elastic = ~modes.massless
+        surface, places = None, None
+        if origin is not None:
+            known: Any = body
+            place = numbers("origin", origin)
+            if place.shape != (3,) or not hasattr(known, "offset"):
+                raise ArgumentError("origin", "be three numbers, of a beam or a plate", origin)
+            check_finite("origin", place)
+            frame = np.array([*axes, np.cross(*axes)])
+            places = {one: place + known.offset(named.get(at, at)) @ frame for one, at in points.items()}
+            surface = known.surface().placed(frame, place) if known.has_surface else None
         return cls(
             modes.angular_frequency[elastic],
             rows,
@@ -156,6 +170,8 @@ class ModalBody(NamedPoints):
             axes.T @ modes.translation if body.has_translation else None,
             int(modes.massless.sum()),
             name or body.name,
+            outer_surface=surface,
+            places=places,
         )
 
     @classmethod

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..arrays import Array, in_space
+from ..arrays import Array
 from ..checks import ArgumentError, at_least, at_most, count, finite, instance, positive, within
 from ..ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .body_surfaces import HIGHEST, PointSurface, largest_part
@@ -116,6 +116,7 @@ class ModalPlate(InPlane):
     point_names: ClassVar[tuple[str, ...]] = ("centre",)
     has_positions: ClassVar[bool] = True
     has_translation: ClassVar[bool] = True
+    has_surface: ClassVar[bool] = True
     material: Material
     thickness: float
     length: float
@@ -202,6 +203,10 @@ class ModalPlate(InPlane):
         if not isinstance(position, tuple):
             return position
         return float(np.subtract(position, self.track_line.origin) @ np.array(self.track_line.tangent))
+
+    def offset(self, position: float | tuple[float, float]) -> Array:
+        """Return the place at rest of a position relative to that of abscissa 0 of its line [m], shape (3,)."""
+        return np.asarray(np.subtract(self._point(position), self.track_line.origin) @ self.frame[:2])
 
     @property
     def rigidity(self) -> float:
@@ -341,8 +346,7 @@ class ModalPlate(InPlane):
     def frame(self) -> Array:
         """World components of the directions along its length and width and along its normal, shape (3, 3)."""
         cosine, sine = self.track_line.tangent
-        line, normal = (in_space(axis) for axis in self.axes)
-        across = np.cross(normal, line)
+        line, across, normal = super().frame
         return np.array([cosine * line - sine * across, sine * line + cosine * across, normal])
 
     def surface(self, frequency: float = HIGHEST) -> PointSurface:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, in_space
 from ..checks import ArgumentError
 from .cards import HasCard
 from .matrix_input import numbers
@@ -37,6 +37,12 @@ class InPlane(HasCard):
     def axes(self) -> Array:
         """Unit vectors along it and along its normal in the world frame, shape (2, 2) or (2, 3)."""
         return np.eye(2) if self.plane is None else np.array(self.plane)
+
+    @property
+    def frame(self) -> Array:
+        """World components of the directions along it, across it to the left and along its normal, shape (3, 3)."""
+        along, normal = (in_space(axis) for axis in self.axes)
+        return np.array([along, np.cross(normal, along), normal])
 
     def in_the_world(self, rows: Array) -> Array:
         """Return rows along world x, y and, in space, z from those along it and along its normal, shape (2, modes)."""

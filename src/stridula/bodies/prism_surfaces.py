@@ -79,7 +79,12 @@ def prism_surface(
     return cut_faces(placed, trace(mesh.nodes), largest)
 
 
-def beam_surface(beam: Any, half_waves: float, largest: float) -> PointSurface:
+def has_outline(section: Any) -> bool:
+    """Return whether the outline of a section is known, so that a beam has a surface."""
+    return beam_mesh.dispatch(type(section)) is not beam_mesh.dispatch(object)
+
+
+def beam_surface(beam: Any, half_waves: float, largest: float, held_x: bool = False) -> PointSurface:
     """Return the surface of a beam whose axis begins at the origin of the world; sections move as their middle does.
 
     Parameters
@@ -90,12 +95,14 @@ def beam_surface(beam: Any, half_waves: float, largest: float) -> PointSurface:
         How many half-waves its modes have at most.
     largest : float
         Largest part of the surface for sound [m].
+    held_x : bool, optional
+        Whether its root is held along x.
     """
     mesh = beam_mesh(beam.section, beam.length, cells_of(half_waves))
 
     def moved(places: Array) -> Array:
         along, which = np.unique(np.clip(places[:, 0], 0.0, beam.length), return_inverse=True)
-        rows = [beam.trace(place) for place in along.tolist()]
+        rows = [beam.trace(place, held_x) for place in along.tolist()]
         return np.array([np.pad(row, ((0, 3 - len(row)), (0, 0))) for row in rows])[which.ravel()]
 
     first, second = (in_space(axis) for axis in beam.axes)

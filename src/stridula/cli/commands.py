@@ -188,14 +188,17 @@ def sound(
         str, typer.Option(metavar="PA", help="Pressure at full scale, or `normalised`: 1 dB above the peak.")
     ] = "normalised",
     subtype: Annotated[str, typer.Option(metavar="WORD", help="Format of the samples: PCM_24 or FLOAT.")] = "PCM_24",
-    unbaffled: Annotated[
-        bool, typer.Option("--unbaffled", help="Treat tracks as slender beams in free air, without a baffle.")
-    ] = False,
+    baffled: Annotated[
+        bool | None,
+        typer.Option(
+            "--baffled/--unbaffled",
+            help="Flat tracks in an infinite wall, or in free air; default: in a wall in the plane, free in space.",
+        ),
+    ] = None,
 ) -> None:
     """Print the sound levels of a record at listeners, and write the sound as WAV."""
     from .sounding import sound_of_record
 
-    baffled = False if unbaffled else None
     figures = {"--plot": plot, "--bands": bands}
     sound_of_record(record, listener or [], body or [], wav, figures, sample_rate, full_scale, subtype, baffled)
 

@@ -1,12 +1,13 @@
-"""Sound of bodies in open air: spheres, a thin disc, a bar, the balance of power, and filters in time.
+"""Sound of bodies in open air: spheres, a thin disc, thin plates, a bar, the balance of power, filters in time.
 
 A sphere and a disc as bodies of revolution, by rings of sources; a sphere and a bar as meshes, by the pressure on their
-surface. Their motions are prescribed: shapes take the place of modes.
+surface; plates as sheets of dipoles. Their motions are prescribed: shapes take the place of modes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -16,7 +17,9 @@ from ..acoustics.convolution import Convolution
 from ..acoustics.dipoles import moved_area
 from ..acoustics.equivalent_sources import Radiator
 from ..acoustics.free_responses import free_responses
+from ..acoustics.panels import Panel
 from ..acoustics.ring_sources import RingSources
+from ..acoustics.sheets import SheetDipoles, sheet_of
 from ..acoustics.surface_pressures import SurfacePressures
 from ..arrays import Array
 from ..bodies import Rectangle, RectangleProfile, SolidMesh
@@ -137,6 +140,33 @@ def bar() -> Outcome:
     )
 
 
+def rigid_plate(length: float, width: float) -> SheetDipoles:
+    """Return a thin plate that moves as a rigid body."""
+    waves = np.full((1, 2), 1e-9)
+    panel = Panel(length, width, 0.0, 1.0, waves, np.ones(1), np.zeros(1), (0.0, length), lambda at: (at, at))
+    sheet = sheet_of(panel, 0.0)
+    return SheetDipoles(replace(sheet, shapes=np.ones_like(sheet.shapes)))
+
+
+def air_carried(length: float, width: float) -> float:
+    """Return the added mass of a rigid plate over that of a cylinder of its width and length."""
+    far = 1e3 * length
+    pressure = heard(rigid_plate(length, width), STILL, np.array([[0.5 * length, 0.5 * width, far]]))[0, 0]
+    return 4.0 * pi * far**2 * float(pressure.real) / AIR.density / (0.25 * pi * width**2 * length)
+
+
+def plates() -> Outcome:
+    """Thin rectangular plates that oscillate along their normal: the added mass of the air, from the far field."""
+    ratios, known = np.array([1.0, 1.25, 1.5, 2.0, 4.0, 10.0]), [0.579, 0.642, 0.690, 0.757, 0.872, 0.947]
+    found = [air_carried(0.1 * float(ratio), 0.1) for ratio in ratios]
+    rows = [
+        Row(f"added mass over that of a cylinder, sides as 1 to {ratio:g}", one, obtained, 1e-3, "digits of the table")
+        for ratio, one, obtained in zip(ratios, known, found, strict=True)
+    ]
+    curves = [Curve(ratios, np.array(found), "obtained", marks=True), Curve(ratios, np.array(known), "table")]
+    return Outcome(rows, Sketch("longer side over shorter side", "added mass over that of a cylinder", curves))
+
+
 def power() -> Outcome:
     """Power over a far sphere against power at the surface, for a bending disc."""
     surface, far, rows = disc(0.02), 30.0, []
@@ -200,6 +230,12 @@ def cases() -> Iterator[Case]:
     )
     yield Case(
         "bar-in-air", "A slender bar that oscillates, and the air with it", "conformal mapping of its section", bar
+    )
+    yield Case(
+        "plate-in-air",
+        "Thin plates that oscillate, and the air with them",
+        "DNV-RP-C205, added mass of rectangular plates",
+        plates,
     )
     yield Case("power-in-air", "Power at the surface of a bent disc and far away", "conservation of energy", power)
     yield Case("tones-in-air", "Steady tones through impulse responses", morse, tones)

@@ -1,0 +1,240 @@
+"""Sound of bodies in space: by their closed surface in open air, as lines of dipoles, or as flat bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+
+from ..arrays import Array, in_space
+from ..bodies import Modes
+from ..bodies.body_surfaces import HIGHEST as FINE_ENOUGH
+from ..checks import ArgumentError, listed
+from .air import Air
+from .listeners import check_off_panel
+from .open_surfaces import HIGHEST, STILL, Heard, open_surface
+from .panels import is_flat
+from .responses import Way, slim_below, way_of
+from .slim_beams import SlimBeam, slim_beam
+
+# Frequency up to which a beam must be slim to be a line of dipoles, over that of its highest mode.
+BEYOND = 1.2
+# Largest distance of parallel flat bodies in one baffle [m], and smallest cosine of the angle between their normals.
+LEVEL, PARALLEL = 1e-9, 1.0 - 1e-12
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A rigid infinite wall.
+
+    Attributes
+    ----------
+    origin, normal : ndarray, shape (3,)
+        One of its points [m], and its normal towards the listeners.
+    """
+
+    origin: Array
+    normal: Array
+
+    def heights(self, places: Array) -> Array:
+        """Return the distances of places in front of it [m], negative behind it."""
+        return np.asarray((places - self.origin) @ self.normal)
+
+    def images(self, places: Array) -> Array:
+        """Return the mirror images of places in it [m]."""
+        return np.asarray(places - 2.0 * np.outer(self.heights(places), self.normal))
+
+
+class Sounding(Protocol):
+    """A body in space as a source of sound."""
+
+    @property
+    def name(self) -> str:
+        """Name of the body."""
+
+    @property
+    def most(self) -> float:
+        """Largest bandwidth of its sound [Hz]."""
+
+    @property
+    def points(self) -> Array:
+        """Places on it in the world [m], shape (points, 3)."""
+
+    @property
+    def wall(self) -> Wall | None:
+        """The baffle with which it is flush, None in open air."""
+
+    def distances(self, places: Array) -> Array:
+        """Return the distances of places to it [m]; raise ValueError for places inside it or behind the baffle."""
+
+    def heard(self, moving: Array, places: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
+        """Return its sound at places; `moving` are the numbers of the modes that move."""
+
+
+@dataclass(frozen=True)
+class Slim:
+    """A slim beam in open air as a line of dipoles.
+
+    Attributes
+    ----------
+    name : str
+        Name of the body.
+    beam : SlimBeam
+        The beam, in the axes of the world.
+    """
+
+    most: ClassVar[float] = np.inf
+    wall: ClassVar[None] = None
+    name: str
+    beam: SlimBeam
+
+    @property
+    def points(self) -> Array:
+        """Its two ends."""
+        along = self.beam.frame[0]
+        return self.beam.origin + np.outer([0.0, self.beam.length], along)
+
+    def distances(self, places: Array) -> Array:
+        """Return the distances to its axis."""
+        return self.beam.distances(places)
+
+    def heard(self, moving: Array, places: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
+        """Return the sound of the modes that move."""
+        beam = self.beam.only(np.flatnonzero(np.isin(self.beam.numbers, moving)))
+        if not beam.numbers.size:
+            return Heard(beam.numbers, [])
+        note = f"{self.name}: a line of dipoles, slim below {slim_below(beam.body, air):.4g} Hz"
+        return Heard(beam.numbers, beam.responses(places, air, interval, shift, bandwidth), notes=[note])
+
+
+@dataclass(frozen=True)
+class Flat:
+    """A flat body, in a baffle or in open air.
+
+    Attributes
+    ----------
+    name : str
+        Name of the body.
+    way : Way
+        How it radiates.
+    frame : ndarray, shape (3, 3)
+        World components of its x, y and z axes.
+    corner : ndarray, shape (3,)
+        Place in the world where its x, y and z are zero [m].
+    """
+
+    name: str
+    way: Way
+    frame: Array
+    corner: Array
+
+    @property
+    def most(self) -> float:
+        """Largest bandwidth of its sound [Hz]."""
+        return self.way.most
+
+    @property
+    def points(self) -> Array:
+        """Its four corners."""
+        panel = self.way.panel
+        x, y = np.meshgrid([0.0, panel.length], [panel.edge, panel.edge + panel.width])
+        return np.asarray(self.corner + np.column_stack([x.ravel(), y.ravel()]) @ self.frame[:2])
+
+    @property
+    def wall(self) -> Wall | None:
+        """The wall around it, None in open air."""
+        return Wall(self.corner, self.frame[2]) if self.way.in_a_wall else None
+
+    def distances(self, places: Array) -> Array:
+        """Return the distances to its surface."""
+        if self.wall is not None:
+            for place, height in zip(places, self.wall.heights(places), strict=True):
+                if height <= 0.0:
+                    raise ArgumentError("listener", "be in front of the baffle", got=f"{tuple(place.tolist())}")
+        found = self.way.panel.distances(self._own(places))
+        check_off_panel(found, self.way.nearest, places)
+        return found
+
+    def heard(self, moving: Array, places: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
+        """Return the sound of the modes that bend it."""
+        waves = self.way.panel.wavenumbers
+        bending = moving[moving < len(waves)]
+        if not bending.size:
+            return Heard(bending, [])
+        # Modes with the same sine along x are adjacent.
+        bending = bending[np.argsort(waves[bending, 0], kind="stable")]
+        return self.way.heard(bending, self._own(places), air, interval, shift, bandwidth)
+
+    def _own(self, places: Array) -> Array:
+        return np.asarray((places - self.corner) @ self.frame.T)
+
+
+def sounding_of(name: str, body: Any, held: bool, origin: Array, baffled: bool, air: Air) -> Sounding:
+    """Return a body that has a surface as a source of sound.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    body : object
+        The body.
+    held : bool
+        Whether its root follows an imposed velocity.
+    origin : ndarray, shape (3,)
+        Place of its origin in the world [m].
+    baffled : bool
+        Whether flat bodies are in a baffle.
+    air : Air
+        The air.
+    """
+    if is_flat(body) and (baffled or not hasattr(body, "section")):
+        way = way_of(body, baffled, name)
+        away = np.array([*way.panel.place(np.zeros(())), 0.0])
+        return Flat(name, way, body.frame, origin - away @ body.frame)
+    modes = body.modes(held)
+    if not hasattr(body, "section"):
+        return open_surface(name, body.surface(), modes, origin)
+    line = line_in_space(body, held, origin)
+    if is_slim(line, modes, air):
+        return Slim(name, line)
+    surface = body.surface(held_x=True) if held else body.surface()
+    # A beam of finite elements may have more modes than its surface resolves.
+    return open_surface(name, surface, modes, origin, FINE_ENOUGH)
+
+
+def line_in_space(beam: Any, held: bool, origin: Array) -> SlimBeam:
+    """Return a beam as a line, with the modes that bend it."""
+    along, across = (in_space(axis) for axis in beam.axes)
+    frame = np.array([along, np.cross(across, along), across])
+    every = slim_beam(beam, held, np.arange(beam.modes(held).count), frame, origin)
+    moved = np.abs(every.shapes(beam.drawn_places, beam.drawn_places)).max(axis=0)
+    return every.only(np.flatnonzero(moved > STILL * moved.max(initial=0.0)))
+
+
+def is_slim(line: SlimBeam, modes: Modes, air: Air) -> bool:
+    """Return whether a beam is slim at all frequencies of its sound."""
+    highest = float(modes.frequency[line.numbers].max(initial=0.0))
+    return slim_below(line.body, air) >= min(HIGHEST, BEYOND * highest)
+
+
+def wall_of(heard: Sequence[Sounding]) -> Wall | None:
+    """Return the baffle of bodies, None in open air.
+
+    Raises
+    ------
+    ValueError
+        If flat bodies lie in different planes, or others behind the baffle.
+    """
+    walls = [one.wall for one in heard if one.wall is not None]
+    if not walls:
+        return None
+    wall = walls[0]
+    for other in walls:
+        if float(wall.normal @ other.normal) < PARALLEL or abs(float(wall.heights(other.origin))) > LEVEL:
+            raise ArgumentError("baffled", "be False where flat bodies do not lie in one plane", got=True)
+    behind = [one.name for one in heard if one.wall is None and float(wall.heights(one.points).mean()) < 0.0]
+    if behind:
+        raise ArgumentError("baffled", f"be False with bodies behind the baffle: {listed(behind)}", got=True)
+    return wall
