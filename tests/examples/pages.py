@@ -5,8 +5,6 @@ Long runs are shortened by rules common to all pages: `shorter`, `few` and `smal
 
 from __future__ import annotations
 
-import ast
-import builtins
 import re
 import shlex
 import textwrap
@@ -69,26 +67,3 @@ def smaller(words: list[str]) -> list[str]:
     found = [changed.get(before, word) for before, word in zip(["", *varied], varied, strict=False)]
     is_short = is_run and not {"--out", "-o", "--duration"} & set(words)
     return [*found, *["--slowdown", "100"] * is_film, *["--duration", "20 ms"] * is_short]
-
-
-def own(page: Path) -> list[tuple[str, str]]:
-    """Return code and texts of a page; an example that it shows first runs elsewhere unless later code needs it."""
-    (first, *later) = found = blocks(page, "python", "text")
-    examples = [path.read_text(encoding="utf-8") for path in (ROOT / "examples").glob("*.py")]
-    return later if first[1] in examples and not missing([text for kind, text in later if kind == "python"]) else found
-
-
-def missing(code: Sequence[str]) -> set[str]:
-    """Return the names that code uses without having them."""
-    nodes = [node for text in code for node in ast.walk(ast.parse(text))]
-    names = [node for node in nodes if isinstance(node, ast.Name)]
-    given = {node.id for node in names if isinstance(node.ctx, ast.Store)}
-    given |= {node.name for node in nodes if isinstance(node, ast.FunctionDef)}
-    given |= {node.arg for node in nodes if isinstance(node, ast.arg)}
-    given |= {
-        alias.asname or alias.name
-        for node in nodes
-        if isinstance(node, ast.Import | ast.ImportFrom)
-        for alias in node.names
-    }
-    return {node.id for node in names} - given - set(dir(builtins))

@@ -14,7 +14,7 @@ import stridula as st
 from stridula import studies
 
 from .checks import CHECKS, GIVEN, SCENARIOS, WRITTEN, pad
-from .pages import PAGES, ROOT, blocks, commands, few, own, shorter, smaller
+from .pages import PAGES, ROOT, blocks, commands, few, shorter, smaller
 
 
 @pytest.fixture
@@ -57,7 +57,7 @@ def test_code(page, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(studies, "Grid", lambda keys: grid(few(keys)))
     names: dict[str, Any] = {}
     printed = [""]
-    for language, text in own(page):
+    for language, text in blocks(page, "python", "text"):
         if language == "text":
             assert printed[-1].strip() == text.strip()
         else:

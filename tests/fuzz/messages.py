@@ -20,6 +20,8 @@ from stridula.app.session import Session
 
 # A conversation that takes longer hangs [s].
 PATIENCE = 15.0
+# Revision of the valid scene after all others.
+LAST = 2**50
 # Longest line of a refusal, and of all lines of one.
 LONGEST, LONGEST_IN_ALL = 2_000, 20_000
 KEYS = [one.key for one in (*CONTROLS, *CHOICES)]
@@ -81,17 +83,27 @@ class _Socket:
 
     def __init__(self, given: list[str | bytes]) -> None:
         self.told: list[dict[str, Any] | bytes] = []
-        self._said = iter([*given, _message("scene", revision=2**50), _message("pull", parts=1, samples=48)])
+        self._before: str | bytes = b""
+        self._said = iter([*given, _message("scene", revision=LAST), _message("pull", parts=1, samples=48)])
 
     async def receive_text(self) -> str:
         await asyncio.sleep(0)
         said = next(self._said, None)
         if said is None:
             raise WebSocketDisconnect(1000)
+        if self._is_last(said):
+            # As a page does, which plays the present scene until then.
+            while not any(isinstance(one, dict) and one.get("revision") == LAST for one in self.told):
+                await asyncio.sleep(0.01)
         if isinstance(said, bytes):
             # As starlette does for other than text.
             raise KeyError("text")
         return said
+
+    def _is_last(self, said: str | bytes) -> bool:
+        """Whether this is the pull after the valid scene."""
+        self._before, before = said, self._before
+        return before == _message("scene", revision=LAST)
 
     async def send_json(self, words: dict[str, Any]) -> None:
         # A browser reads neither NaN nor Infinity.
@@ -125,7 +137,7 @@ async def _played(socket: _Socket) -> None:
     assert socket.told[0]["type"] == "hello"
     # After any messages, a valid one is played.
     scene = next(one for one in reversed(socket.told) if isinstance(one, dict) and one["type"] != "stroke")
-    assert (scene["type"], scene["revision"]) == ("scene", 2**50)
+    assert (scene["type"], scene["revision"]) == ("scene", LAST)
     assert isinstance(socket.told[-1], bytes)
     assert len(socket.told[-1]) > 48 * 4
 

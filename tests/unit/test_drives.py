@@ -103,7 +103,9 @@ def test_an_initial_equilibrium_holds_tuples_and_needs_a_mode_for_an_amplitude()
 
 
 def test_contact_tip_is_a_point_of_another_body_than_the_track():
-    with pytest.raises(ValueError, match=r"^track must be another body than the tip's \(equal ones need names\), got "):
+    with pytest.raises(
+        ValueError, match=r"^track must be a body other than the tip's \(equal bodies need names\), got "
+    ):
         contact(tip=BAR.centre)
 
 

@@ -286,7 +286,7 @@ def test_other_files_are_not_touched(tmp_path):
         ("run.nc", "another file"),
         ("text.nc", "another file"),
         ("folder.nc", "must hold parts of this sweep"),
-        ("file.nc", "must be left for the parts"),
+        ("file.nc", "must be free for the parts"),
     ):
         with pytest.raises(ValueError, match=words):
             st.sweep("squeal", [{"friction": 0.3}], FORCES, out=out, **SHORT)

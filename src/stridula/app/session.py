@@ -111,8 +111,9 @@ class Session:
         await _sent(self.socket.send_json({"type": what, **words}))
 
     async def _answer(self, message: Message) -> None:
-        if type(message) is not Pull and "scene" in self._tasks:
-            # Only the sound continues while another scenario is prepared.
+        preparing = self._tasks.get("scene")
+        # Only the sound continues while another scenario is prepared.
+        if preparing is not None and (preparing.done() or type(message) is not Pull):
             await self._tasks.pop("scene")
         if type(message) is Scene and self.instrument is not None:
             self._do("scene", self._scene_beside(message))
