@@ -1,8 +1,8 @@
 """Rows of a block of modes, of a block of waves and of a block of contact forces."""
 
 # Rows of a mode: state, share of an increment kept, stiffness of a step, loads of this step; in a march of several
-# contacts, increment and position without contact force and push of the contacts; amplitudes of its waves on a path and
-# of their derivatives.
+# contacts, increment and position without contact force and push of the contacts; amplitudes of its waves on a path, or
+# of two products of waves, and of their derivatives.
 (
     Q,
     D,
@@ -25,6 +25,10 @@ CONTACTS = NORMAL
 # Rows of a wave: sine and cosine at the contact, alternately for the last step and for this one, and its number.
 SINE, COSINE, NUMBER = 0, 1, 4
 WAVE_ROWS = 5
+# Waves of the path of a contact: first block, blocks along and across, whether those along start from the multiple 0,
+# and entry of the multiple 0 across.
+FIRST, ALONG, ACROSS, FROM_ZERO, ZEROTH = range(5)
+WAVE_SET = 5
 
 # Rows of contact forces: relative displacement under them; then the compliance, a row for a unit of each force; then as
 # many rows for the compliance of the constant rows alone.

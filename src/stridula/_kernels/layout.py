@@ -14,9 +14,9 @@ Q, D = range(2)
 # Rows of a contact: relative displacement of the tip against the fixed part of the track, along normal and tangent.
 NORMAL, TANGENTIAL = range(2)
 
-# Spans of blocks of modes that a contact depends on: first block, end, kind, whether their modes consist of two waves,
-# whether of cosines.
-BEGIN, END, KIND, TWO_WAVES, COSINES = range(5)
+# Spans of blocks of modes that a contact depends on: first block, end, kind; products of waves of two angles that their
+# modes consist of, 0 for waves of one angle; whether of cosines.
+BEGIN, END, KIND, PRODUCTS, COSINES = range(5)
 SPAN = 5
 # Kinds of span: rows are constant; waves of a path along the normal and along the tangent; all modes of a body that the
 # contact moves round.

@@ -14,9 +14,11 @@ from typing import Any
 
 import numba
 
+from . import layout as at
 from .block_rows import (
     AMPLITUDE,
     CONTACTS,
+    FIRST,
     FORCE,
     INCREMENT,
     KEPT,
@@ -28,10 +30,11 @@ from .block_rows import (
     SLOPE,
     STIFFNESS,
     TANGENTIAL,
+    ZEROTH,
     D,
     Q,
 )
-from .lanes import fused, load, spread, store, total
+from .lanes import entry, fused, load, spread, store, total
 
 # Strict arithmetic: a step is the same to the last bit wherever it is completed. No reference counting: arrays come
 # from Python and stay.
@@ -91,11 +94,37 @@ def pass_fixed(rows, begin, end, run, pending, normal, tangential):
 
 
 @numba.njit(**OPTIONS)
-def pass_waves(rows, waves, wave_of, begin, end, two, run, pending, pull, last, last_slope, now):
-    """Complete a pending step of modes on a path under a force (step 6), and try the next (steps 1 to 4).
+def trace_of(rows, k, waves, here, number, products, sine, cosines, run, like):
+    """Return the displacement of a path for a unit of the modes in block `k`, by the waves in rows from `sine` on.
 
-    `last`, `last_slope` and `now` are the rows of the waves at the contact in the step completed, of their derivatives,
-    and of the waves in the next. Modes consist of two waves if `two`, else of one.
+    `here` is the block of the waves along the path, `number` the entry of the wave across it.
+    """
+    if not products:
+        return load(rows, k, AMPLITUDE, run) * load(waves, here, sine + cosines, run)
+    trace = (load(rows, k, AMPLITUDE, run) * load(waves, here, sine + 1 - cosines, run)) * entry(
+        waves, number, sine, run, like
+    )
+    if products > 1:
+        other = load(rows, k, OTHER_AMPLITUDE, run) * load(waves, here, sine + cosines, run)
+        trace = fused(other, entry(waves, number, sine + 1, run, like), trace)
+    return trace
+
+
+@numba.njit(**OPTIONS)
+def slope_of(rows, k, waves, here, number, products, sine, cosines, run, like):
+    """Return the derivative along a path of `trace_of`."""
+    if not products:
+        return load(rows, k, SLOPE, run) * load(waves, here, sine + 1 - cosines, run)
+    slope = (load(rows, k, SLOPE, run) * load(waves, here, sine + cosines, run)) * entry(waves, number, sine, run, like)
+    other = load(rows, k, OTHER_SLOPE, run) * load(waves, here, sine + 1 - cosines, run)
+    return fused(other, entry(waves, number, sine + 1, run, like), slope)
+
+
+@numba.njit(**OPTIONS)
+def pass_waves(modes, paths, s, run, pending, pull, last, now, like):
+    """Complete a pending step of the modes of span `s` under a force (step 6), and try the next (steps 1 to 4).
+
+    `last` and `now` are the first rows of the waves at the contact in the step completed and in the next.
 
     Returns
     -------
@@ -103,26 +132,22 @@ def pass_waves(rows, waves, wave_of, begin, end, two, run, pending, pull, last, 
         Trial displacement of the path at the contact, displacement for a unit force, slope of the path there after the
         step completed; works and losses of that step as in `pass_fixed`.
     """
+    rows, waves, spans = modes.rows, paths.waves, paths.spans
+    products, cosines = spans[s, at.PRODUCTS], spans[s, at.COSINES]
     trace, softness, slopes = spread(0.0), spread(0.0), spread(0.0)
     works, losses = spread(0.0), spread(0.0)
-    for k in range(begin, end):
+    for k in range(spans[s, at.BEGIN], spans[s, at.END]):
         q, d, kept, stiffness, force = block_at(rows, k, run)
-        here, amplitude = wave_of[k], load(rows, k, AMPLITUDE, run)
-        row = amplitude * load(waves, here, now, run)
-        if two:
-            row = fused(load(rows, k, OTHER_AMPLITUDE, run), load(waves, here + 1, now, run), row)
+        here, number = paths.wave_of[k], paths.sets[0, ZEROTH] + paths.across_of[k]
+        row = trace_of(rows, k, waves, here, number, products, now, cosines, run, like)
         if pending:
-            before = amplitude * load(waves, here, last, run)
-            slope = load(rows, k, SLOPE, run) * load(waves, here, last_slope, run)
-            if two:
-                before = fused(load(rows, k, OTHER_AMPLITUDE, run), load(waves, here + 1, last, run), before)
-                slope = fused(load(rows, k, OTHER_SLOPE, run), load(waves, here + 1, last_slope, run), slope)
-            push = pull * before
+            push = pull * trace_of(rows, k, waves, here, number, products, last, cosines, run, like)
             increment = fused(kept, d, fused(-stiffness, q, force + push))
             q, both = complete(rows, k, run, q, d, increment)
             d = increment
             works = fused(push, both, works)
             losses = fused((1.0 - kept) * both, both, losses)
+            slope = slope_of(rows, k, waves, here, number, products, last, cosines, run, like)
             slopes = fused(slope, q, slopes)
         trace = fused(row, q + fused(kept, d, fused(-stiffness, q, force)), trace)
         softness = fused(row, row, softness)
@@ -140,27 +165,26 @@ def try_all(rows, begin, end, run):
 
 
 @numba.njit(**OPTIONS)
-def set_path_rows(rows, waves, wave_of, first, begin, end, two, run, row, sine):
-    """Set the row of a contact to minus the trace of its path, whose waves begin at `first` (step 2)."""
-    for k in range(begin, end):
-        here = first + wave_of[k]
-        trace = load(rows, k, AMPLITUDE, run) * load(waves, here, sine, run)
-        if two:
-            trace = fused(load(rows, k, OTHER_AMPLITUDE, run), load(waves, here + 1, sine, run), trace)
-        store(rows, k, row, run, -trace)
+def set_path_rows(rows, paths, i, s, row, sine, run, like):
+    """Set the row of contact `i` in span `s` to minus the trace of its path (step 2)."""
+    spans, first, zeroth = paths.spans, paths.sets[i, FIRST], paths.sets[i, ZEROTH]
+    products, cosines = spans[s, at.PRODUCTS], spans[s, at.COSINES]
+    for k in range(spans[s, at.BEGIN], spans[s, at.END]):
+        here, number = first + paths.wave_of[k], zeroth + paths.across_of[k]
+        store(rows, k, row, run, -trace_of(rows, k, paths.waves, here, number, products, sine, cosines, run, like))
 
 
 @numba.njit(**OPTIONS)
-def slope_along(rows, waves, wave_of, first, begin, end, two, run, slope_row, zero):
-    """Return the derivative of a path's displacement along it at a contact."""
+def slope_along(rows, paths, i, s, sine, run, like):
+    """Return the derivative of a path's displacement along it at contact `i`, by the modes of span `s`."""
+    spans, first, zeroth = paths.spans, paths.sets[i, FIRST], paths.sets[i, ZEROTH]
+    products, cosines = spans[s, at.PRODUCTS], spans[s, at.COSINES]
     slopes = spread(0.0)
-    for k in range(begin, end):
-        here = first + wave_of[k]
-        slope = load(rows, k, SLOPE, run) * load(waves, here, slope_row, run)
-        if two:
-            slope = fused(load(rows, k, OTHER_SLOPE, run), load(waves, here + 1, slope_row, run), slope)
+    for k in range(spans[s, at.BEGIN], spans[s, at.END]):
+        here, number = first + paths.wave_of[k], zeroth + paths.across_of[k]
+        slope = slope_of(rows, k, paths.waves, here, number, products, sine, cosines, run, like)
         slopes = fused(slope, load(rows, k, Q, run), slopes)
-    return total(slopes, zero)
+    return total(slopes, like)
 
 
 @numba.njit(**OPTIONS)

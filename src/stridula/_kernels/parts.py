@@ -64,10 +64,10 @@ class Paths(NamedTuple):
     ----------
     waves : ndarray, shape (blocks, rows, lanes)
         Sines and cosines at each contact.
-    sets, pairs : ndarray of int
-        Waves of each contact, and those of them that are sums and differences.
-    wave_of : ndarray of int, shape (blocks of modes,)
-        Wave of a block, counted from the first of a contact.
+    sets : ndarray of int
+        Waves of each contact.
+    wave_of, across_of : ndarray of int, shape (blocks of modes,)
+        Wave of a block, counted from the first of a contact, and multiple of the angle across.
     spans, first_span : ndarray of int
         Spans of blocks; those of contact i from ``first_span[i]`` to ``first_span[i + 1]``, constant ones first.
     path_of : ndarray of int, shape (contacts,)
@@ -80,8 +80,8 @@ class Paths(NamedTuple):
 
     waves: np.ndarray
     sets: np.ndarray
-    pairs: np.ndarray
     wave_of: np.ndarray
+    across_of: np.ndarray
     spans: np.ndarray
     first_span: np.ndarray
     path_of: np.ndarray

@@ -22,7 +22,7 @@ from .modes import (
     try_all,
     two_products,
 )
-from .waves import FIRST, set_waves
+from .waves import set_waves
 
 
 @numba.njit(**OPTIONS)
@@ -49,7 +49,7 @@ def set_waves_at(i, paths, constants, place, sine, run, zero):
     across = fused(
         held(constants, base + at.ACROSS, run, zero), place, held(constants, base + at.ACROSS_PHASE, run, zero)
     )
-    set_waves(paths.waves, paths.sets, paths.pairs, i, along, across, sine, run)
+    set_waves(paths.waves, paths.sets, i, along, across, sine, run)
 
 
 @numba.njit(**OPTIONS)
@@ -90,21 +90,9 @@ def try_one(modes, paths, contacts, state, imposed, n, touch, pending, sine, run
         last, sine = sine, 2 - sine
         set_waves_at(0, paths, contacts.constants, place, sine, run, zero)
         for s in range(1, paths.first_span[1]):
-            upright, turned = spans[s, at.KIND] == at.PATH_NORMAL, spans[s, at.COSINES]
-            trace, softness, slopes, work, loss = pass_waves(
-                rows,
-                paths.waves,
-                paths.wave_of,
-                spans[s, at.BEGIN],
-                spans[s, at.END],
-                spans[s, at.TWO_WAVES],
-                run,
-                pending,
-                -normal if upright else tangential,
-                last + turned,
-                last + 1 - turned,
-                sine + turned,
-            )
+            upright = spans[s, at.KIND] == at.PATH_NORMAL
+            pull = -normal if upright else tangential
+            trace, softness, slopes, work, loss = pass_waves(modes, paths, s, run, pending, pull, last, sine, zero)
             works, losses = works + work, losses + loss
             if upright:
                 gap -= total(trace, zero)
@@ -125,21 +113,9 @@ def complete_one(modes, paths, touch, sine, run, zero):
     _, _, works, losses = pass_fixed(rows, spans[0, at.BEGIN], spans[0, at.END], run, True, normal, tangential)
     slope = zero
     for s in range(1, paths.first_span[1]):
-        upright, turned = spans[s, at.KIND] == at.PATH_NORMAL, spans[s, at.COSINES]
-        _, _, slopes, work, loss = pass_waves(
-            rows,
-            paths.waves,
-            paths.wave_of,
-            spans[s, at.BEGIN],
-            spans[s, at.END],
-            spans[s, at.TWO_WAVES],
-            run,
-            True,
-            -normal if upright else tangential,
-            sine + turned,
-            sine + 1 - turned,
-            sine + turned,
-        )
+        upright = spans[s, at.KIND] == at.PATH_NORMAL
+        pull = -normal if upright else tangential
+        _, _, slopes, work, loss = pass_waves(modes, paths, s, run, True, pull, sine, sine, zero)
         works, losses = works + work, losses + loss
         slope += normal * total(slopes, zero) if upright else -tangential * total(slopes, zero)
     return 0.5 * total(works, zero), 0.25 * total(losses, zero), slope
@@ -170,10 +146,7 @@ def try_many(modes, paths, contacts, turning, state, imposed, sizes, n, ended, r
                 if kind != at.CONSTANT:
                     upright = kind == at.PATH_NORMAL
                     row = CONTACTS + 2 * i + (0 if upright else 1)
-                    sine = SINE + spans[s, at.COSINES]
-                    two = spans[s, at.TWO_WAVES]
-                    first = paths.sets[i, FIRST]
-                    set_path_rows(rows, paths.waves, paths.wave_of, first, begin, end, two, run, row, sine)
+                    set_path_rows(rows, paths, i, s, row, SINE, run, zero)
                     moved = product(rows, row, POSITION, begin, end, run, zero)
                     gap += moved if upright else zero
                     slip += zero if upright else moved
@@ -230,8 +203,7 @@ def place_after(i, modes, paths, contacts, state, imposed, n, run, runs, zero):
             continue
         if kind == at.ROUND:
             continue
-        turned, two, first = spans[s, at.COSINES], spans[s, at.TWO_WAVES], paths.sets[i, FIRST]
-        found = slope_along(rows, paths.waves, paths.wave_of, first, begin, end, two, run, SINE + 1 - turned, zero)
+        found = slope_along(rows, paths, i, s, SINE, run, zero)
         if kind == at.PATH_NORMAL:
             slope += held(contacts.now, here + at.NORMAL_NOW, run, zero) * found
         else:

@@ -1,8 +1,7 @@
 """Sines and cosines of the waves of a path at a moving point.
 
-The waves of a path are sines of ``m a + n b``: of the multiples of an angle along it, and on a plate of sums and
-differences with multiples of a second angle. Their order: multiples of the first angle, multiples of the second, then
-the sum and the difference for each requested pair.
+The waves of a path are sines and cosines of the multiples of an angle along it; on a plate modes are their products
+with those of a second angle. Their order: multiples of the first angle, then multiples of the second, from 0 on.
 """
 
 import math
@@ -10,15 +9,10 @@ import math
 import numba
 from numba.extending import overload
 
-from .block_rows import NUMBER
-from .lanes import entry, fused, lane, load, spread, store, whole
+from .block_rows import ACROSS, ALONG, FIRST, FROM_ZERO, NUMBER
+from .lanes import fused, lane, load, spread, store, whole
 from .modes import OPTIONS
 from .vectors import LANES, VECTOR
-
-# Waves of the path of a contact: first block, numbers along and across, whether those along start from the multiple 0,
-# and pairs.
-FIRST, ALONG, ACROSS, FROM_ZERO, PAIRS, PAIRS_END = range(6)
-WAVE_SET = 6
 
 
 @numba.njit(**(OPTIONS | {"fastmath": {"contract", "nsz"}}))
@@ -95,24 +89,9 @@ def _set_multiples(theta, from_zero, count, waves, first, sine, run):
 
 
 @numba.njit(**OPTIONS)
-def set_sums_and_differences(waves, pairs, begin, end, first, sine, run, like):
-    """Set the waves of the sums and the differences of pairs of angles in blocks from `first` on."""
-    for p in range(begin, end):
-        along, across, here = pairs[p, 0], pairs[p, 1], first + 2 * (p - begin)
-        s, c = load(waves, along, sine, run), load(waves, along, sine + 1, run)
-        turn_s, turn_c = entry(waves, across, sine, run, like), entry(waves, across, sine + 1, run, like)
-        store(waves, here, sine, run, fused(s, turn_c, c * turn_s))
-        store(waves, here, sine + 1, run, fused(c, turn_c, -turn_s * s))
-        store(waves, here + 1, sine, run, fused(s, turn_c, -turn_s * c))
-        store(waves, here + 1, sine + 1, run, fused(c, turn_c, s * turn_s))
-
-
-@numba.njit(**OPTIONS)
-def set_waves(waves, sets, pairs, i, along, across, sine, run):
+def set_waves(waves, sets, i, along, across, sine, run):
     """Set the waves of the path of contact `i` in rows from `sine` on, from the two angles at the contact."""
     first, count, cross = sets[i, FIRST], sets[i, ALONG], sets[i, ACROSS]
     set_multiples(along, sets[i, FROM_ZERO], count, waves, first, sine, run)
     if cross:
-        set_multiples(across, 0, cross, waves, first + count, sine, run)
-        begin, end = sets[i, PAIRS], sets[i, PAIRS_END]
-        set_sums_and_differences(waves, pairs, begin, end, first + count + cross, sine, run, along)
+        set_multiples(across, 1, cross, waves, first + count, sine, run)

@@ -34,6 +34,21 @@ class Waves:
         """Whether modes are made of two waves."""
         return bool(self.multiples[:, 1].any())
 
+    @property
+    def of_products(self) -> Array:
+        """Amplitudes of the products of waves of the two angles, shape (2, modes).
+
+        Sines of sum and difference are ``cos(m a) sin(n b)`` and ``sin(m a) cos(n b)``; cosines are
+        ``sin(m a) sin(n b)`` and ``cos(m a) cos(n b)``.
+        """
+        total, difference = self.amplitude.sum(axis=1), self.amplitude[:, 0] - self.amplitude[:, 1]
+        return np.stack([-difference if self.cosines else difference, total])
+
+    @property
+    def products(self) -> int:
+        """Number of products that modes consist of, 0 if all are waves of the first angle."""
+        return 0 if not self.has_two else 1 + bool(self.of_products[1].any())
+
     def rates(self, rate: Array) -> Array:
         """Return the wavenumbers of the two waves of each mode [rad/m], shape (modes, 2)."""
         return np.asarray(self.multiples @ (rate * [[1.0, 1.0], [1.0, -1.0]]).T)

@@ -196,8 +196,8 @@ class March:
     def _paths(self, width: int) -> Paths:
         where = self.layout
         waves = waves_of(where, width)
-        spans = where.wave_of, where.spans, where.first_span, where.path_of
-        return Paths(waves, where.sets, where.pairs, *spans, where.circles, at_start(where, self.modes.rows))
+        spans = where.wave_of, where.across_of, where.spans, where.first_span, where.path_of
+        return Paths(waves, where.sets, *spans, where.circles, at_start(where, self.modes.rows))
 
     def _contacts(self, contacts: Sequence[ContactBlocks], width: int) -> Contacts:
         runs, count, sizes = self.runs, self.contact_count, self.layout.sizes

@@ -9,12 +9,11 @@ import numpy as np
 from numba.core import config
 
 from .._kernels import layout as at
-from .._kernels.block_rows import AMPLITUDE, COMPLIANCE, CONTACTS, NUMBER, WAVE_ROWS
+from .._kernels.block_rows import AMPLITUDE, COMPLIANCE, CONTACTS, NUMBER, WAVE_ROWS, WAVE_SET
 from .._kernels.direct import FURTHER_ROWS, SAVED
 from .._kernels.parts import Sizes
 from .._kernels.turning import DRAG, TURN_ROWS
 from .._kernels.vectors import LANES
-from .._kernels.waves import WAVE_SET
 from ..arrays import Array
 from ..bodies.paths import Waves
 from ..records.state import State
@@ -36,14 +35,14 @@ class Layout:
         Numbers of blocks of each kind.
     block, lane : ndarray of int, shape (modes,)
         Block of each mode, and its place in it for the first of the runs side by side.
-    wave_of : ndarray of int, shape (blocks,)
-        Wave of each block of a path.
+    wave_of, across_of : ndarray of int, shape (blocks,)
+        Wave of each block of a path, and multiple of the angle across.
     spans, first_span : ndarray of int
         Spans of blocks that act on each contact.
     path_of : ndarray of int, shape (contacts,)
         First block of the path of each contact, -1 for none.
-    sets, pairs, numbers : ndarray
-        Waves of each contact; sums and differences among them; multiples of the angles, a row for each block of waves.
+    sets, numbers : ndarray
+        Waves of each contact; multiples of the angles, a row for each block of waves.
     turning : ndarray of int, shape (bodies, 2)
         First block of the pairs of each body that turns, and end of their range.
     circles : ndarray of int, shape (contacts,)
@@ -54,11 +53,11 @@ class Layout:
     block: Array
     lane: Array
     wave_of: Array
+    across_of: Array
     spans: Array
     first_span: Array
     path_of: Array
     sets: Array
-    pairs: Array
     numbers: Array
     turning: Array
     circles: Array
@@ -90,7 +89,7 @@ def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
         if along is not None:
             spans += places.path_spans[_key(along)]
         first_span.append(len(spans))
-    sets, pairs, numbers = _wave_sets(contacts, places)
+    sets, numbers = _wave_sets(contacts, per_block)
     count = len(contacts.paths)
     sizes = Sizes(
         places.blocks,
@@ -105,17 +104,18 @@ def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
         bool((contacts.codes == at.SECOND_TANGENT).any()),
         bool((contacts.circles >= 0).any()),
     )
+    along_of, across_of = np.array(places.waves, dtype=np.int64).reshape(-1, 2).T.copy()
     path_of = [-1 if along is None else places.path_spans[_key(along)][0][0] for along in contacts.paths]
     return Layout(
         sizes,
         places.block,
         places.lane,
-        places.wave_of,
+        along_of,
+        across_of,
         np.array(spans, dtype=np.int64).reshape(-1, at.SPAN),
         np.array(first_span),
         np.array(path_of),
         sets,
-        pairs,
         numbers,
         np.array(places.turning, dtype=np.int64).reshape(-1, 2),
         contacts.circles,
@@ -144,15 +144,13 @@ class _Places:
         self.per_block, self.blocks = per_block, 0
         self.block, self.lane = np.zeros((2, count), dtype=np.int64)
         self.path_spans: dict[int, list[tuple[int, ...]]] = {}
-        self.pairs: dict[int, dict[tuple[int, int], int]] = {}
-        self.waves: list[int] = []
+        self.waves: list[tuple[int, int]] = []
         self.bodies, self.turning = bodies, list[tuple[int, int]]()
         self.round_spans: list[tuple[int, int]] = []
         paths = {_key(along): along for along in contacts.paths if along is not None}
         self._fill(0, coupled, paths)
         self.coupled = self.blocks
         self._fill(coupled, count, paths)
-        self.wave_of = np.array(self.waves, dtype=np.int64)
 
     def _fill(self, begin: int, end: int, paths: dict[int, PathModes]) -> None:
         inside = [along for along in paths.values() if begin <= along.normal.start < end]
@@ -166,31 +164,29 @@ class _Places:
         )
         self.block[others] = self.blocks + np.arange(others.size) // self.per_block
         self.lane[others] = np.arange(others.size) % self.per_block
-        self.plain = self._take(-(-others.size // self.per_block), 0)
+        self.plain = self._take(-(-others.size // self.per_block))
         for one in turning:
             first = self.blocks
             self.block[one.others] = first + np.arange(one.others.size) // self.per_block
             self.lane[one.others] = np.arange(one.others.size) % self.per_block
-            self._take(-(-one.others.size // self.per_block), 0)
+            self._take(-(-one.others.size // self.per_block))
             self.plain = self._take_pairs(one.pairs)
             self.round_spans.append((first, self.plain))
         for along in inside:
-            pairs = self.pairs[_key(along)] = {}
-            first, along_count = first_multiple(along), along_blocks(along, self.per_block)
-            across = across_blocks(along, self.per_block)
+            first = first_multiple(along)
             spans = []
             for kind, span, waves in zip(
                 PATH_KINDS, (along.normal, along.tangential), (along.path.normal, along.path.tangential), strict=True
             ):
                 start = self.blocks
                 for numbers in _groups(waves):
-                    self._take_group(span.start + numbers, waves.multiples[numbers], first, along_count + across, pairs)
-                spans.append((start, self.blocks, kind, int(waves.has_two), int(waves.cosines)))
+                    self._take_group(span.start + numbers, waves.multiples[numbers], first)
+                spans.append((start, self.blocks, kind, waves.products, int(waves.cosines)))
             self.path_spans[_key(along)] = [span for span in spans if span[1] > span[0]]
 
-    def _take(self, blocks: int, wave: int) -> int:
+    def _take(self, blocks: int, along: int = 0, across: int = 0) -> int:
         self.blocks += blocks
-        self.waves += [wave] * blocks
+        self.waves += [(along, across)] * blocks
         return self.blocks
 
     def _take_pairs(self, modes: Array) -> int:
@@ -199,21 +195,16 @@ class _Places:
         for side in (0, 1):
             self.block[modes[:, side]] = first + 2 * (number // self.per_block) + side
             self.lane[modes[:, side]] = number % self.per_block
-        self.turning.append((first, self._take(2 * -(-len(modes) // self.per_block), 0)))
+        self.turning.append((first, self._take(2 * -(-len(modes) // self.per_block))))
         return self.blocks
 
-    def _take_group(
-        self, modes: Array, multiples: Array, first: int, simple: int, pairs: dict[tuple[int, int], int]
-    ) -> None:
+    def _take_group(self, modes: Array, multiples: Array, first: int) -> None:
         """Put modes with the same second multiple at places given by the first."""
         wave, lane = np.divmod(multiples[:, 0] - first, self.per_block)
-        across = int(multiples[0, 1])
         for number in np.unique(wave).tolist():
             here = wave == number
             self.block[modes[here]], self.lane[modes[here]] = self.blocks, lane[here]
-            if across:
-                number = simple + 2 * pairs.setdefault((number, across), len(pairs))
-            self._take(1, number)
+            self._take(1, number, int(multiples[0, 1]))
 
 
 def _groups(waves: Waves) -> list[Array]:
@@ -243,34 +234,26 @@ def along_blocks(along: PathModes, per_block: int) -> int:
 
 
 def across_blocks(along: PathModes, per_block: int) -> int:
-    """Return the number of blocks for the waves across it."""
-    return int(-(-_both(along)[:, 1].max() // per_block))
+    """Return the number of blocks for the waves across it, from the multiple 0 on; 0 if all are along it."""
+    highest = int(_both(along)[:, 1].max())
+    return -(-(highest + 1) // per_block) if highest else 0
 
 
-def _wave_sets(contacts: ContactBlocks, places: _Places) -> tuple[Array, Array, Array]:
-    """Return the waves of each contact, their sums and differences, and their multiples."""
-    per_block = places.per_block
+def _wave_sets(contacts: ContactBlocks, per_block: int) -> tuple[Array, Array]:
+    """Return the waves of each contact, and their multiples."""
     sets: list[list[int]] = []
-    pairs: list[list[int]] = []
     numbers: list[Array] = []
     lanes = np.arange(LANES)
     for along in contacts.paths:
         if along is None:
             sets.append([0] * WAVE_SET)
             continue
-        first, begin = len(numbers), len(pairs)
+        first = len(numbers)
         low, counts = first_multiple(along), (along_blocks(along, per_block), across_blocks(along, per_block))
         numbers += [low + per_block * k + lanes for k in range(counts[0])]
-        numbers += [1 + per_block * k + lanes for k in range(counts[1])]
-        known = places.pairs[_key(along)]
-        pairs += [[first + j, (first + counts[0]) * per_block + n - 1] for j, n in known]
-        numbers += [lanes] * (2 * len(known))
-        sets.append([first, *counts, 1 - low, begin, len(pairs)])
-    return (
-        np.array(sets, dtype=np.int64),
-        np.array(pairs, dtype=np.int64).reshape(-1, 2),
-        np.array(numbers, dtype=float).reshape(-1, LANES),
-    )
+        numbers += [per_block * k + lanes for k in range(counts[1])]
+        sets.append([first, *counts, 1 - low, (first + counts[0]) * per_block])
+    return np.array(sets, dtype=np.int64), np.array(numbers, dtype=float).reshape(-1, LANES)
 
 
 def pack(where: Layout, rows: Sequence[Array], width: int) -> Array:
@@ -333,11 +316,17 @@ def rows_of(blocks: Blocks, state: State, scale: Array) -> Array:
 
 
 def _put_waves(rows: Array, along: PathModes) -> None:
-    """Put amplitude and slope of each of the two waves of the modes of a path."""
+    """Put amplitudes and slopes of the waves, or of their products, of the modes of a path."""
     path = along.path
     for span, waves in ((along.normal, path.normal), (along.tangential, path.tangential)):
-        slopes = waves.amplitude * waves.rates(path.rate) * (-1.0 if waves.cosines else 1.0)
-        rows[0::2, span], rows[1::2, span] = waves.amplitude.T, slopes.T
+        sign = -1.0 if waves.cosines else 1.0
+        if not waves.products:
+            rows[0, span] = waves.amplitude[:, 0]
+            rows[1, span] = sign * waves.amplitude[:, 0] * waves.rates(path.rate)[:, 0]
+            continue
+        (second, first), (m, n) = waves.of_products, (waves.multiples * path.rate).T
+        rows[0, span], rows[2, span] = second, first
+        rows[1, span], rows[3, span] = -sign * m * second - n * first, n * second + sign * m * first
 
 
 def matrices_of(where: Layout, runs: Sequence[Recurrence], width: int) -> Array:
