@@ -122,6 +122,8 @@ def test_the_keyboard_reaches_everything(browsing):
     page.locator("#scenario summary").click()
     page.locator("#tour-begin").click()
     page.locator("#tour-next").click()
+    # The controls are those of the second stop.
+    until(page, "stridula.stats.revision >= 3")
     page.evaluate("document.activeElement.blur()")
     page.evaluate(f"window.wanted = ({SEEN})()")
     count = page.evaluate("wanted.length")
