@@ -46,7 +46,7 @@ export class Sound {
     if (!this.context) await this.#begin();
     await this.context.resume();
     const { port1, port2 } = new MessageChannel();
-    this.tell({ stream: port1, flush: true, needed: Math.round(0.05 * 48000) }, [port1]);
+    this.tell({ stream: port1, flush: true, needed: Math.round(0.06 * 48000) }, [port1]);
     this.stream.postMessage({ player: port2 }, [port2]);
     this.#tell();
   }
