@@ -25,7 +25,7 @@ from .panels import panel_of
 from .recorded_motion import RecordedModes, recorded_motion
 from .redriven import redriven
 from .resampling import bandwidth_of, ratio_of, resample
-from .responses import slim_below
+from .responses import line_note
 from .slim_beams import SlimBeam, slim_beam
 from .track_sound import track_sound
 from .travels import travel_note, travel_of
@@ -223,7 +223,8 @@ def _of_beams(
         for places in images if numbers.size else []:
             responses = beam.responses(places, air, moved.interval, shift, bandwidth)
             pressure += convolved(responses, moved, numbers)
-        notes += _said(system, body, beam, reach, air)
+        name = system.body_name(body)
+        notes += [line_note(name, body, air), *travel_note(name, reach)]
     sounding = resample(pressure, ratio)
     times = np.arange(sounding.shape[1]) * moved.interval / float(ratio)
     nearest = np.min(distances, axis=0)
@@ -232,13 +233,6 @@ def _of_beams(
     notes += lacks(system, beams, silent, [moved])
     attributes = {"bandwidth": bandwidth, "modes": modes, "baffled": int(wall is not None), "motion": moved.words}
     return sounding, moved.start + times, {**attributes, "distance": nearest.tolist(), "notes": "; ".join(notes)}
-
-
-def _said(system: System, body: Any, beam: SlimBeam, reach: float, air: Air) -> list[str]:
-    """Return notes on a beam."""
-    name = system.body_name(body)
-    notes = [f"{name}: a line of dipoles, slim below {slim_below(body, air):.4g} Hz"]
-    return [*notes, *travel_note(name, reach)]
 
 
 def _added(parts: Sequence[Part]) -> tuple[Array, dict[str, Any]]:

@@ -147,6 +147,11 @@ def _sheet(plate: ModalPlate) -> Sheet:
     return sheet_of(low, min(FINE_ENOUGH, STOP_BEYOND * float(low.angular_frequency.max()) / (2.0 * np.pi)))
 
 
+def line_note(name: str, beam: Any, air: Air) -> str:
+    """Return a note on a beam as a line of dipoles."""
+    return f"{name}: a line of dipoles, slim below {slim_below(beam, air):.4g} Hz"
+
+
 def slim_below(beam: Any, air: Air) -> float:
     """Return the frequency [Hz] below which a beam is slim: its width is a sixth of the wavelength."""
     return float(air.speed / (6.0 * beam.section.largest_side))

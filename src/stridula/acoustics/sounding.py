@@ -16,7 +16,7 @@ from .air import Air
 from .listeners import check_off_panel
 from .open_surfaces import HIGHEST, STILL, Heard, open_surface
 from .panels import is_flat
-from .responses import Way, slim_below, way_of
+from .responses import Way, line_note, slim_below, way_of
 from .slim_beams import SlimBeam, slim_beam
 
 # Frequency up to which a beam must be slim to be a line of dipoles, over that of its highest mode.
@@ -105,8 +105,8 @@ class Slim:
         beam = self.beam.only(np.flatnonzero(np.isin(self.beam.numbers, moving)))
         if not beam.numbers.size:
             return Heard(beam.numbers, [])
-        note = f"{self.name}: a line of dipoles, slim below {slim_below(beam.body, air):.4g} Hz"
-        return Heard(beam.numbers, beam.responses(places, air, interval, shift, bandwidth), notes=[note])
+        notes = [line_note(self.name, beam.body, air)]
+        return Heard(beam.numbers, beam.responses(places, air, interval, shift, bandwidth), notes=notes)
 
 
 @dataclass(frozen=True)

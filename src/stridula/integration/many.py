@@ -315,7 +315,7 @@ def _waves(one: ContactRows) -> Hashable:
         return None
     track: Any = one.contact.track
     path = track.path()
-    return tuple((waves.multiples.tobytes(), waves.cosines) for waves in (path.normal, path.tangential))
+    return tuple((waves.multiples.tobytes(), waves.cosines, waves.products) for waves in (path.normal, path.tangential))
 
 
 class _Cancelled(Exception):
