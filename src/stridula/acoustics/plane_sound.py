@@ -26,7 +26,7 @@ from .recorded_motion import RecordedModes, recorded_motion
 from .redriven import redriven
 from .resampling import bandwidth_of, ratio_of, resample
 from .responses import line_note
-from .slim_beams import SlimBeam, slim_beam
+from .slim_beams import slim_beam
 from .track_sound import track_sound
 from .travels import travel_note, travel_of
 
