@@ -128,7 +128,7 @@ def by_equations(times):
     """Place along and across, and normal force, from the equations of motion with the constraint ``y = phi(x) q``."""
     modes, path = LIGHT.modes(), LIGHT.path()
     squared, damping = modes.angular_frequency**2, modes.damping_rate
-    rates = path.normal.rates(path.rate)[:, 0]
+    rates = path.normal.multiples[:, 0] * path.rate[0]
 
     def normal_force(t, y):
         x, (q, p), v = y[0], y[4:].reshape(2, -1), y[2:4]

@@ -324,8 +324,8 @@ class ModalPlate(InPlane):
     def path(self) -> Path:
         """Return the path along which other bodies slide.
 
-        ``sin a sin b = [cos(a - b) - cos(a + b)] / 2``, and similarly for displacements in the plane. On a line along a
-        side the angle across it is constant, so that one sine remains.
+        Modes are products of sines and cosines of the angles along both sides. On a line along a side the angle across
+        it is constant, so that one sine remains.
         """
         (x, y), direction = self.track_line.origin, np.array(self.track_line.tangent)
         sides = np.array([self.length, self.width])
@@ -337,10 +337,8 @@ class ModalPlate(InPlane):
                 bending = along_one_angle(numbers[:, side], self.amplitude * np.sin(numbers[:, 1 - side] * across))
                 moved = (u, v)[side] * np.cos(in_plane[:, 1 - side] * across)
                 return Path(self.ends, *there, bending, along_one_angle(in_plane[:, side], moved))
-        bending = Waves(numbers, 0.5 * self.amplitude * np.tile([-1.0, 1.0], (len(numbers), 1)), cosines=True)
-        moved = 0.5 * np.stack([u + v, u - v], axis=1)
-        moved[in_plane[:, 1] == 0] = np.stack([u, np.zeros_like(u)], axis=1)[in_plane[:, 1] == 0]
-        return Path(self.ends, rate, phase, bending, Waves(in_plane, moved))
+        bending = Waves(numbers, np.tile([0.0, self.amplitude], (len(numbers), 1)), cosines=True)
+        return Path(self.ends, rate, phase, bending, Waves(in_plane, np.stack([u, v], axis=1)))
 
     @property
     def frame(self) -> Array:

@@ -13,16 +13,16 @@ from .modes import Body, BodyPoint
 
 @dataclass(frozen=True)
 class Waves:
-    """The traces of some modes along a path: sines, or cosines, of ``m a + n b`` and ``m a - n b``.
+    """The traces of some modes along a path: products of sines and cosines of ``m a`` and ``n b``.
 
     Attributes
     ----------
     multiples : ndarray of int, shape (modes, 2)
         Multiples (m, n) of the two angles of the path.
     amplitude : ndarray, shape (modes, 2)
-        Amplitudes for the sum and the difference of the angles [kg^(-1/2)]; the second is zero where n is.
+        Amplitudes of ``sin(m a) cos(n b)`` and of ``cos(m a) sin(n b)`` [kg^(-1/2)].
     cosines : bool, optional
-        Whether they are cosines instead of sines.
+        Whether the products are ``cos(m a) cos(n b)`` and ``sin(m a) sin(n b)`` instead.
     """
 
     multiples: Array
@@ -30,48 +30,47 @@ class Waves:
     cosines: bool = False
 
     @property
-    def has_two(self) -> bool:
-        """Whether modes are made of two waves."""
-        return bool(self.multiples[:, 1].any())
-
-    @property
-    def of_products(self) -> Array:
-        """Amplitudes of the products of waves of the two angles, shape (2, modes).
-
-        Sines of sum and difference are ``cos(m a) sin(n b)`` and ``sin(m a) cos(n b)``; cosines are
-        ``sin(m a) sin(n b)`` and ``cos(m a) cos(n b)``.
-        """
-        total, difference = self.amplitude.sum(axis=1), self.amplitude[:, 0] - self.amplitude[:, 1]
-        return np.stack([-difference if self.cosines else difference, total])
-
-    @property
     def products(self) -> int:
         """Number of products that modes consist of, 0 if all are waves of the first angle."""
-        return 0 if not self.has_two else 1 + bool(self.of_products[1].any())
+        return 1 + bool(self.amplitude[:, 0].any()) if self.multiples[:, 1].any() else 0
 
-    def rates(self, rate: Array) -> Array:
-        """Return the wavenumbers of the two waves of each mode [rad/m], shape (modes, 2)."""
-        return np.asarray(self.multiples @ (rate * [[1.0, 1.0], [1.0, -1.0]]).T)
+    def slopes(self, rate: Array) -> Array:
+        """Return the amplitudes of the derivatives along the path for the rates of the angles, shape (modes, 2).
+
+        They are amplitudes of the other two products, those of ``sin(n b)`` first.
+        """
+        (first, second), (m, n) = self.amplitude.T, (self.multiples * rate).T
+        sign = -1.0 if self.cosines else 1.0
+        return np.stack([-sign * m * second - n * first, sign * m * first + n * second], axis=1)
 
     def traces(self, path: Path, abscissa: float) -> tuple[Array, Array]:
         """Return the trace of each mode at an abscissa [m] and its derivative along the path."""
-        rates = self.rates(path.rate)
-        angles = rates * abscissa + self.rates(path.phase)
-        if self.cosines:
-            return (self.amplitude * np.cos(angles)).sum(axis=1), (-self.amplitude * rates * np.sin(angles)).sum(axis=1)
-        return (self.amplitude * np.sin(angles)).sum(axis=1), (self.amplitude * rates * np.cos(angles)).sum(axis=1)
+        (one, other), (sine, cosine) = self._waves(path, np.array(abscissa))
+        trace = self.amplitude * np.stack([one * cosine, other * sine], axis=1)
+        slope = self.slopes(path.rate) * np.stack([one * sine, other * cosine], axis=1)
+        return trace.sum(axis=1), slope.sum(axis=1)
 
     def along(self, path: Path, abscissas: Array) -> Array:
         """Return the trace of each mode at many abscissas [m], shape (modes, abscissas)."""
-        angles = self.rates(path.rate)[..., None] * abscissas + self.rates(path.phase)[..., None]
-        return np.asarray((self.amplitude[..., None] * (np.cos if self.cosines else np.sin)(angles)).sum(axis=1))
+        (one, other), (sine, cosine) = self._waves(path, abscissas)
+        first, second = self.amplitude.T[..., None]
+        return np.asarray(first * one * cosine + second * other * sine)
+
+    def _waves(self, path: Path, abscissas: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """Return the wave of the first angle in the first product and its other, sine and cosine of the second."""
+        along, across = (
+            np.multiply.outer(numbers, rate * abscissas + phase)
+            for numbers, rate, phase in zip(self.multiples.T, path.rate, path.phase, strict=True)
+        )
+        sine, cosine = np.sin(along), np.cos(along)
+        return (cosine, sine) if self.cosines else (sine, cosine), (np.sin(across), np.cos(across))
 
 
 @dataclass(frozen=True)
 class Path:
-    """A line on a body along which every mode is at most two sinusoids of the abscissa s.
+    """A line on a body along which every mode is at most two products of sinusoids of the abscissa s.
 
-    Their arguments are combinations of two angles, ``rate s + phase``, each from 0 to pi between the ends. Modes along
+    Their arguments are multiples of two angles, ``rate s + phase``, each from 0 to pi between the ends. Modes along
     the normal come first, then modes along the tangent.
 
     Attributes

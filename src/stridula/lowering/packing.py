@@ -319,14 +319,12 @@ def _put_waves(rows: Array, along: PathModes) -> None:
     """Put amplitudes and slopes of the waves, or of their products, of the modes of a path."""
     path = along.path
     for span, waves in ((along.normal, path.normal), (along.tangential, path.tangential)):
-        sign = -1.0 if waves.cosines else 1.0
-        if not waves.products:
-            rows[0, span] = waves.amplitude[:, 0]
-            rows[1, span] = sign * waves.amplitude[:, 0] * waves.rates(path.rate)[:, 0]
-            continue
-        (second, first), (m, n) = waves.of_products, (waves.multiples * path.rate).T
-        rows[0, span], rows[2, span] = second, first
-        rows[1, span], rows[3, span] = -sign * m * second - n * first, n * second + sign * m * first
+        amplitude, slope = waves.amplitude.T, waves.slopes(path.rate).T
+        if waves.products:
+            rows[0, span], rows[2, span] = amplitude[::-1]
+            rows[1::2, span] = slope
+        else:
+            rows[0, span], rows[1, span] = amplitude[0], slope[1]
 
 
 def matrices_of(where: Layout, runs: Sequence[Recurrence], width: int) -> Array:
