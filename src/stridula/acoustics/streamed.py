@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from fractions import Fraction
 
 import numpy as np
@@ -89,6 +90,12 @@ class StreamedSound:
         self.force, self.position = np.zeros(2 * LEAD), np.zeros(LEAD)
         self.moved = np.zeros((len(self.filters), self.reach))
         self.has_begun = False
+
+    def copy(self) -> StreamedSound:
+        """Return a sound that continues on its own from the same state."""
+        other = copy(self)
+        other.memory, other.position = list(self.memory), self.position.copy()
+        return other
 
     def feed(self, force: Array, position: Array) -> Array:
         """Return the pressure at the next samples, from the normal forces and their places.

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import time as clock
+from collections import deque
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,11 +14,12 @@ from ..arrays import Array
 from ..checks import choice
 from ..histories import Constant
 from ..integration.live import LiveChunk, LiveMarch
+from ..integration.live import Moment as MarchMoment
 from .drawing import drawing_of
 from .last_seconds import LastSeconds
 from .parts import Part, Stop
 from .playable import Playable
-from .sources import Source, source_of
+from .sources import Heard, Source, source_of
 
 RATE = 48_000
 # Time after which a tip that sticks under a constant force, or is off the track, begins another stroke [s].
@@ -29,6 +32,19 @@ BLEND = 0.004
 LIVE = 1.05
 # Number and samples of the moments that measure the speed of playing; short ones if they take longer than the last [s].
 MOMENTS, MOMENT, SHORT, LONG = 5, 480, 48, 0.01
+# Parts to whose ends it can return.
+PARTS_KEPT = 50
+# Attributes that change while it plays.
+PLAYING = ("stroke", "ended", "played_samples", "_still", "_blend", "_last", "_since_repeat", "_must_blend")
+
+
+@dataclass(frozen=True)
+class _Moment:
+    """A moment to which an instrument can return: its attributes, its source and its march."""
+
+    attributes: dict[str, Any]
+    source: Heard
+    march: MarchMoment
 
 
 class Instrument:
@@ -57,16 +73,39 @@ class Instrument:
         self._must_blend = False
         self.last_seconds = LastSeconds(RATE, played)
         self.last_seconds.changed(0.0, played.toml)
+        self._moments: deque[_Moment] = deque(maxlen=PARTS_KEPT)
+        self._forget()
 
     def is_of(self, played: Playable) -> bool:
         """Whether a scenario is of the case or text that is played."""
         return played.origin == self.played.origin
 
-    def change(self, played: Playable, revision: int) -> bool:
+    def change(self, played: Playable, revision: int, kept: int | None = None) -> bool:
         """Continue as another scenario and return whether the motion continues; otherwise a stroke begins.
 
         Another case or text begins a stroke, as does any change after a stroke has ended.
+
+        Parameters
+        ----------
+        played : Playable
+            New scenario.
+        revision : int
+            Number of the change.
+        kept : int, optional
+            Played samples that must stay; the change takes place as soon after them as the parts played since allow,
+            which are forgotten. After all of them if left out.
         """
+        now = self._now
+        self._go_back(kept)
+        try:
+            goes_on = self._change(played, revision)
+        except (ValueError, MemoryError):
+            self._return_to(now)
+            raise
+        self._forget()
+        return goes_on
+
+    def _change(self, played: Playable, revision: int) -> bool:
         longer = self.longer if self.is_of(played) else None
         if longer is not None and played.scenario.step is None:
             played = played.stepped(longer)
@@ -88,11 +127,13 @@ class Instrument:
             self._begin_stroke()
         return goes_on
 
-    def begin_as(self, other: Instrument, revision: int) -> None:
-        """Begin a stroke of the scenario of another instrument that has not been played yet."""
+    def begin_as(self, other: Instrument, revision: int, kept: int | None = None) -> None:
+        """Begin a stroke of the scenario of another instrument that has not been played yet, as in `change`."""
+        self._go_back(kept)
         self.live, self.longer, self.drawing = other.live, other.longer, other.drawing
         self._now_plays(other.played, revision, other.name, other.source)
         self._begin_stroke()
+        self._forget()
 
     def _now_plays(self, played: Playable, revision: int, name: str, source: Any) -> None:
         self._last *= played.sources[name].full_scale / self.heard_as.full_scale
@@ -102,8 +143,29 @@ class Instrument:
         self._must_blend, self._still = True, 0
         self._since_repeat = round(TRUST * RATE)
 
-    def listen_to(self, name: str) -> None:
-        """Change the source of the sound, with a smooth transition at the same level.
+    @property
+    def _now(self) -> _Moment:
+        return _Moment({name: getattr(self, name) for name in PLAYING}, self.source.copy(), self.live.moment)
+
+    def _go_back(self, kept: int | None) -> None:
+        """Return to the first known moment with at least so many played samples, if it is not the present one."""
+        known = ((moment, moment.attributes["played_samples"]) for moment in self._moments)
+        moment, samples = next((one for one in known if kept is not None and one[1] >= kept), (None, 0))
+        if moment is not None and samples < self.played_samples:
+            self._return_to(moment)
+
+    def _return_to(self, moment: _Moment) -> None:
+        vars(self).update(moment.attributes)
+        self.source = moment.source.copy()
+        self.live.return_to(moment.march)
+
+    def _forget(self) -> None:
+        """Forget earlier moments, since the instrument must not return to before now."""
+        self._moments.clear()
+        self._moments.append(self._now)
+
+    def listen_to(self, name: str, kept: int | None = None) -> None:
+        """Change the source of the sound, with a smooth transition at the same level, as soon as in `change`.
 
         Raises
         ------
@@ -111,9 +173,11 @@ class Instrument:
             If there is no source of this name.
         """
         choice("source", name, tuple(self.played.sources))
+        self._go_back(kept)
         self._last *= self.played.sources[name].full_scale / self.heard_as.full_scale
         self.wanted = self.name = name
         self.source, self._must_blend = source_of(name, self.live), True
+        self._forget()
 
     @property
     def heard_as(self) -> Source:
@@ -135,7 +199,7 @@ class Instrument:
         longer = self.speed()
         if longer < LIVE:
             self.change(usual, self.revision)
-            self.live.restart()
+            self._rewind()
             return speed
         self.longer = step
         return longer
@@ -146,9 +210,13 @@ class Instrument:
         self._moment(SHORT)
         samples = SHORT if self._moment(SHORT) > LONG else MOMENT
         taken = [self._moment(samples) for _ in range(MOMENTS)]
+        self._rewind()
+        return samples / RATE / sorted(taken)[MOMENTS // 2]
+
+    def _rewind(self) -> None:
         self.live.restart()
         self.source.begin()
-        return samples / RATE / sorted(taken)[MOMENTS // 2]
+        self._forget()
 
     def _moment(self, samples: int) -> float:
         """Play a moment without output and return the processor time it takes [s], whatever else runs."""
@@ -159,8 +227,13 @@ class Instrument:
             self.drawing.shapes(self.live, chunk)
         return clock.thread_time() - began
 
-    def restart(self) -> None:
-        """Begin a stroke from the initial state."""
+    def restart(self, kept: int | None = None) -> None:
+        """Begin a stroke from the initial state, as soon as in `change`."""
+        self._go_back(kept)
+        self._restart()
+        self._forget()
+
+    def _restart(self) -> None:
         self.live.restart()
         self._begin_stroke()
 
@@ -179,6 +252,7 @@ class Instrument:
                 yield self._part(chunk)
             samples -= len(chunk.time)
             self._since_repeat += len(chunk.time)
+            self._moments.append(self._now)
             why = ended if ended != "finished" else self._at_rest(chunk)
             if not why:
                 continue
@@ -187,7 +261,7 @@ class Instrument:
             goes_on = self.repeats and self._since_repeat >= needed
             if goes_on:
                 self._since_repeat = 0
-                self.restart()
+                self._restart()
             elif ended == "finished":
                 self._still = -(2**62)
                 continue

@@ -91,7 +91,10 @@ class LastSeconds:
         return min(KEPT, MOST_NUMBERS / numbers)
 
     def keep(self, part: Part, source: Source) -> None:
-        """Keep a part and discard those that are too old."""
+        """Keep a part in place of any kept for the same time, and discard those that are too old."""
+        begins = part.clock - len(part.sound) / self.rate
+        while self._parts and self._parts[-1].clock > begins + 0.5 / self.rate:
+            self._samples -= len(self._parts.pop().sound)
         chunk = part.chunk
         recorded = chunk.contacts | chunk.along_tangents
         small = {variable.name: recorded[variable.name].astype("f4") for variable in (*CONTACT, STATUS)}

@@ -13,6 +13,8 @@ LONGEST = 300
 Number = Annotated[float, Field(allow_inf_nan=False, ge=-1e15, le=1e15)]
 Revision = Annotated[int, Field(ge=0, le=2**50)]
 Key = Annotated[str, Field(max_length=100)]
+# Number of samples that the page keeps: it has not played the later ones yet, and they are computed anew.
+Kept = Annotated[int, Field(ge=0, le=2**50)] | None
 
 
 class _Message(BaseModel):
@@ -27,6 +29,7 @@ class Scene(_Message):
     case: Annotated[str, Field(max_length=100)] = "squeal"
     text: Annotated[str, Field(max_length=60_000)] | None = None
     overrides: Annotated[dict[Key, Number | int | Key], Field(max_length=40)] = {}
+    kept: Kept = None
 
 
 class Pull(_Message):
@@ -42,12 +45,14 @@ class Listen(_Message):
 
     type: Literal["listen"]
     source: Annotated[str, Field(max_length=40)]
+    kept: Kept = None
 
 
 class Restart(_Message):
     """Request to begin a stroke."""
 
     type: Literal["restart"]
+    kept: Kept = None
 
 
 class Repeat(_Message):

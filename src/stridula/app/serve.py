@@ -30,6 +30,8 @@ PATIENCE = 2.0
 EVERYWHERE = ("0.0.0.0", "::")
 # An unused address and port.
 ELSEWHERE = ("192.0.2.1", 9)
+# Longest time for which a thread keeps the interpreter while another waits [s].
+HANDED_OVER = 0.001
 COMPILING = "stridula: compiling, once; this takes some ten seconds"
 
 
@@ -62,6 +64,8 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
     # Existing objects are permanent: searching them for garbage would interrupt the sound.
     gc.collect()
     gc.freeze()
+    # Threads that prepare a change must not hold up the sound.
+    sys.setswitchinterval(HANDED_OVER)
     address, *others = addresses(host, listening.getsockname()[1])
     print("\n".join([f"stridula plays at {address} (Ctrl-C stops it)", *others]), flush=True)
     # Pages that disconnect during a response are not logged.

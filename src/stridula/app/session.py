@@ -35,6 +35,8 @@ AHEAD, FASTEST = 1.0, 1.5
 # Parts after which other pages have their turn; parts that take long are cut so that turns come this often [s], and
 # the longest time of parts played at once [s].
 PARTS_AT_ONCE, TURN, LONGEST = 4, 0.02, 0.25
+# Speed from which sound that is not heard yet is computed anew after a change; slower systems need it.
+REPLAYED = 2.0
 # Time without changes before linear theory is computed [s].
 PAUSE = 0.25
 # Interval in which the present motion is reported, and the shortest one [s].
@@ -126,7 +128,9 @@ class Session:
 
     async def _listen(self, message: Listen) -> None:
         if self.instrument is not None:
-            self.instrument.listen_to(message.source)
+            before = self.instrument.played_samples
+            self.instrument.listen_to(message.source, self._kept(message))
+            await self._anew(before)
         self.source = message.source
 
     async def _repeat(self, message: Repeat) -> None:
@@ -137,6 +141,7 @@ class Session:
     async def _scene(self, scene: Scene) -> None:
         """Play another scene, or its playable part; the present one sounds until it is ready."""
         refused: dict[str, list[str]] = {}
+        came = clock.monotonic()
         try:
             found = await asyncio.to_thread(held, scene, self.scene)
             refused, played = found.refused, found.played
@@ -144,7 +149,7 @@ class Session:
                 raise ScenarioError(found.problems)
             other = await self._prepared(played)
             async with self._changing:
-                goes_on = await self._play(played, scene.revision, other)
+                goes_on = await self._play(played, scene.revision, other, self._kept(scene, clock.monotonic() - came))
                 self.scene = found.scene
                 # Before the first part of it.
                 await self._tell_scene(scene.revision, goes_on, refused)
@@ -170,20 +175,39 @@ class Session:
             return None
         return await asyncio.to_thread(_begun, played, self.source)
 
-    async def _play(self, played: Playable, revision: int, other: tuple[Instrument, float | None] | None) -> bool:
+    def _kept(self, message: Scene | Listen | Restart, since: float = 0.0) -> int | None:
+        """Return the number of samples that a page keeps, a time after its message came; None if it keeps all."""
+        if message.kept is None or (self.speed is not None and self.speed < REPLAYED):
+            return None
+        return message.kept + round(since * RATE)
+
+    async def _anew(self, before: int) -> None:
+        """Tell the page from where on the sound is computed anew, if not from where it was."""
+        assert self.instrument is not None
+        undone = before - self.instrument.played_samples
+        if undone:
+            # These samples do not count as requested.
+            self._played -= undone
+            await self._tell("anew", samples=self.instrument.played_samples)
+
+    async def _play(
+        self, played: Playable, revision: int, other: tuple[Instrument, float | None] | None, kept: int | None
+    ) -> bool:
         """Play a scenario, or another one that is prepared, and return whether the motion continues."""
+        before = 0 if self.instrument is None else self.instrument.played_samples
         if other is None:
             assert self.instrument is not None
-            goes_on, speed = await asyncio.to_thread(_changed, self.instrument, played, revision)
+            goes_on, speed = await asyncio.to_thread(_changed, self.instrument, played, revision, kept)
         else:
             (begun, speed), goes_on = other, False
             if self.instrument is None:
                 self.instrument = begun
                 begun.revision, begun.repeats = revision, self.repeats
             else:
-                self.instrument.begin_as(begun, revision)
+                self.instrument.begin_as(begun, revision, kept)
         if not goes_on:
             self.speed, self._taken, self._made = speed, 0.0, 0
+        await self._anew(before)
         return goes_on
 
     async def _tell_scene(self, revision: int, goes_on: bool, refused: dict[str, list[str]]) -> None:
@@ -278,7 +302,9 @@ class Session:
         await _sent(self.socket.send_bytes(content))
 
     async def _restart(self, instrument: Instrument, message: Restart) -> None:
-        instrument.restart()
+        before = instrument.played_samples
+        instrument.restart(self._kept(message))
+        await self._anew(before)
 
     async def _no_map(self, instrument: Instrument, message: NoMap) -> None:
         self._stop("map")
@@ -346,9 +372,9 @@ def _begun(played: Playable, source: str) -> tuple[Instrument, float | None]:
     return instrument, speed
 
 
-def _changed(instrument: Instrument, played: Playable, revision: int) -> tuple[bool, float | None]:
+def _changed(instrument: Instrument, played: Playable, revision: int, kept: int | None) -> tuple[bool, float | None]:
     """Change what an instrument plays; return whether the motion continues, and its speed if not, as in `_begun`."""
-    goes_on = instrument.change(played, revision)
+    goes_on = instrument.change(played, revision, kept)
     speed = None if goes_on or played.is_fast else instrument.keep_up()
     _ = instrument.drawing.described
     return goes_on, speed

@@ -102,12 +102,15 @@ class Heard(Protocol):
     def heard(self, chunk: LiveChunk) -> Array:
         """Return the sound over a chunk."""
 
+    def copy(self) -> Heard:
+        """Return a sound that continues on its own from the same state."""
+
 
 class Pressure:
     """The sound pressure above the middle of a track."""
 
     def __init__(self, track: ModalBeam | ModalPlate, contacts: int, interval: float, steps: int) -> None:
-        self.sounds = [copy(_sound(track, interval, steps)) for _ in range(contacts)]
+        self.sounds = [_sound(track, interval, steps).copy() for _ in range(contacts)]
         self.begin()
 
     def begin(self) -> None:
@@ -126,6 +129,12 @@ class Pressure:
             self.places[number] = float(places[-1])
             heard.append(sound.feed(force, (before + places) / 2.0))
         return heard[0] if len(heard) == 1 else np.asarray(np.sum(heard, axis=0))
+
+    def copy(self) -> Pressure:
+        """Return a sound that continues on its own from the same state."""
+        other = copy(self)
+        other.sounds, other.places = [sound.copy() for sound in self.sounds], list(self.places)
+        return other
 
 
 @lru_cache(maxsize=64)
@@ -154,6 +163,10 @@ class OfContacts:
         """Return the sum over a chunk."""
         return np.asarray(chunk.contacts[self.variable].sum(axis=0))
 
+    def copy(self) -> OfContacts:
+        """Return itself, since it has no state."""
+        return self
+
 
 @dataclass(frozen=True)
 class OfProbe:
@@ -173,6 +186,10 @@ class OfProbe:
     def heard(self, chunk: LiveChunk) -> Array:
         """Return the probe over a chunk."""
         return chunk.probes[:, self.number]
+
+    def copy(self) -> OfProbe:
+        """Return itself, since it has no state."""
+        return self
 
 
 def source_of(name: str, live: LiveMarch) -> Heard:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from copy import deepcopy
+from copy import copy, deepcopy
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -73,6 +74,22 @@ class LiveChunk:
         """Status shares of the first contact."""
         found: Array = self.status_shares[0]
         return found
+
+
+@dataclass(frozen=True)
+class Moment:
+    """A moment of a live march, to which it can return.
+
+    Attributes
+    ----------
+    attributes : dict
+        System, time and filters of the march.
+    state : State
+        State of its system.
+    """
+
+    attributes: dict[str, Any]
+    state: State
 
 
 class LiveMarch:
@@ -149,6 +166,16 @@ class LiveMarch:
     def passed(self) -> Array:
         """Distance by which the track of each contact has been moved along itself so far, shape (contacts,) [m]."""
         return self._imposed_now()[self._arrays.firsts, at.TRACK_MOTION]
+
+    @property
+    def moment(self) -> Moment:
+        """The present moment."""
+        return Moment(_apart(vars(self)), self._march.states[0])
+
+    def return_to(self, moment: Moment) -> None:
+        """Return to an earlier moment; the march continues from it to the last bit as it did then."""
+        vars(self).update(_apart(moment.attributes))
+        self._march = March([self._blocks], [moment.state], self.step, self.ratio)
 
     def restart(self) -> None:
         """Return to the start."""
@@ -383,6 +410,11 @@ class LiveMarch:
             if contact.path_body is not None:
                 own[list(ON_THE_TRACK)] += place - own[at.ABSCISSA]
         self._go(state)
+
+
+def _apart(attributes: dict[str, Any]) -> dict[str, Any]:
+    """Return attributes of a march with copies of what it changes in place, other than its state."""
+    return attributes | {name: copy(attributes[name]) for name in ("_decimator", "_belief")}
 
 
 def _opening(arrays: Assembly, places: Array, position: Array, gaps: Array) -> Array:

@@ -48,6 +48,9 @@ export class Voice {
     this.queue = new Float32Array(1 << 17);
     this.mask = this.queue.length - 1;
     this.written = this.read = 0;
+    this.end = null; // End of the sound in the queue, in samples of the server; null before the first.
+    this.jump = 0; // Difference that a late change leaves, and
+    this.settles = Math.exp(-1 / (FADE * sampleRate)); // its decrease per sample.
     this.marks = [];
     this.volume = this.wanted = 0;
     this.runs = false;
@@ -84,10 +87,35 @@ export class Voice {
     }
   }
 
-  take({ sound, revision }) {
+  // Add sound from sample `at` of the server on, in place of the sound that follows it.
+  take({ sound, revision, at, begins }) {
+    if (begins || this.end === null) this.end = at;
+    const { heard } = this;
+    const end = Math.max(heard, at + sound.length);
+    if (at < this.end) sound = this.replace(sound, at - heard, revision);
+    [this.end, this.newest] = [end, revision];
+    if (this.late && sound.length) {
+      this.jump = (this.last ?? 0) - sound[0];
+      this.late = false;
+    }
     if (this.written + sound.length - this.read > this.queue.length) this.read = this.written;
     this.marks.push({ revision, at: this.written });
     for (const value of sound) this.queue[this.written++ & this.mask] = value;
+  }
+
+  // The next sample to be heard, in samples of the server.
+  get heard() {
+    return this.end - (this.written - this.read);
+  }
+
+  // Remove the sound later than some samples ahead; return the part of other sound, from there on, that is in time.
+  replace(sound, early, revision) {
+    this.written = this.read + Math.max(0, early);
+    this.marks = this.marks.filter((mark) => mark.at < this.written);
+    if (revision !== this.newest) this.spare = early;
+    if (early >= 0) return sound;
+    this.late = true;
+    return sound.subarray(-early);
   }
 
   // Fill a block with the next samples.
@@ -97,7 +125,8 @@ export class Voice {
     for (let i = 0; i < out.length; i++) {
       let value = 0;
       if (this.runs && this.read < this.written) {
-        value = this.queue[this.read++ & this.mask];
+        value = this.queue[this.read++ & this.mask] + this.jump;
+        this.jump *= this.settles;
         this.fade = Math.min(1, this.fade + step);
         this.last = value;
       } else {
@@ -145,7 +174,10 @@ export class Voice {
       }
     }
     if (++this.quanta % 4) return;
-    if (this.stream) this.stream.postMessage({ left: this.written - this.read });
+    if (this.stream && this.end !== null) {
+      this.stream.postMessage({ heard: this.heard, spare: this.spare });
+      this.spare = undefined;
+    } else if (this.stream) this.stream.postMessage({});
     if (this.quanta % 16) return;
     this.tell({
       peak: this.loudest,

@@ -1,15 +1,18 @@
 // The thread that communicates with the server: it requests the next parts in time and passes sound to the player and
 // pictures to the page, so that neither waits for the other.
+import { Ahead, Lead } from "./ahead.js";
 import { parts } from "./parts.js";
 import { Queue } from "./queue.js";
 
 const PART = 480; // Samples of a part while live.
-const FEWEST = 2; // Parts per request.
+const [FEWEST, MOST] = [2, 4]; // Parts per request: few, since a change waits for them.
+const LOW = 0.05; // With less sound ahead [s], the fewest are requested.
 const RATE = 48000;
 const RETRY = 1000; // Time between attempts to reconnect [ms],
 const ROOM = 5000; // and to a full server.
 const FULL = 4429; // Codes of a full server
 const ELSEWHERE = 4403; // and of another server than that of this page.
+const HEARD_SOON = ["scene", "listen", "restart"]; // Messages that change sound that is not heard yet.
 const FRAME = 1000 / 60;
 const LEAST = 12; // Least samples of a part of slow systems, since smaller parts take longer to send than to compute,
 const PICTURES = 30; // and sufficient number of parts per second.
@@ -19,10 +22,13 @@ const queue = new Queue();
 let behind = false;
 let pace = { mode: "live", slow: 1, own: false };
 let asked = 0; // Samples requested but not received.
-let left = 0; // Samples in the player.
+const ahead = new Ahead();
+const lead = new Lead();
+let begins = true; // Whether the next part is the first of a connection.
 let heard = { scale: 1 }; // The present source, with its factor for the player,
 let next = null; // and the source of later requests.
 let clock = 0; // Last update of the time without a player [ms].
+let due = 0; // Samples received before their time without a player.
 let owed = 0; // Samples due in slow motion.
 let file = null;
 let hasScene = false;
@@ -35,18 +41,19 @@ self.onmessage = ({ data }) => {
     connect();
   } else if (data.player) {
     player = data.player;
-    left = 0;
+    ahead.begin(ahead.end);
     player.onmessage = ({ data: told }) => {
-      left = told.left;
+      if (told.spare !== undefined) lead.arrived(told.spare / RATE);
+      if (told.heard !== undefined) show(told.heard);
       feed();
     };
   } else if (data.mute) {
     player = null;
-    left = 0;
+    show(ahead.end);
     clock = performance.now();
   } else if (data.pace) {
     pace = data.pace;
-    left = player ? left : 0;
+    if (!sounds()) show(ahead.end);
     clock = performance.now();
     owed = 0;
     feed();
@@ -72,6 +79,8 @@ function connect() {
     answered = true;
     waiting = null;
     file = null;
+    ahead.begin(0);
+    begins = true;
     clock = performance.now();
   };
   socket.onmessage = ({ data }) => (typeof data === "string" ? told(JSON.parse(data)) : came(data));
@@ -83,7 +92,18 @@ function connect() {
 }
 
 function say(message) {
-  if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+  if (!socket || socket.readyState !== WebSocket.OPEN) return;
+  if (HEARD_SOON.includes(message.type)) message = { ...message, kept: kept() };
+  socket.send(JSON.stringify(message));
+}
+
+// Number of samples that a change keeps: the server computes the others anew. None without sound.
+function kept() {
+  return sounds() ? Math.round(ahead.heard + lead.length * RATE) : null;
+}
+
+function sounds() {
+  return Boolean(player) && pace.mode === "live";
 }
 
 function scene(message) {
@@ -98,6 +118,11 @@ function scene(message) {
 function told(message) {
   if (message.type === "file") {
     file = message;
+    return;
+  }
+  if (message.type === "anew") {
+    ahead.cut(message.samples);
+    feed();
     return;
   }
   // A message refused as a whole may be the scene in question.
@@ -122,17 +147,24 @@ function came(data) {
     return;
   }
   asked = 0;
-  for (const { head, values } of parts(data)) {
-    const [revision, , , samples] = head;
-    if (!player || pace.mode !== "live") break;
+  for (const { head, values, bytes } of parts(data)) {
+    const [revision, seconds, , samples] = head;
+    const end = Math.round(seconds * RATE);
+    const at = end - samples;
+    ahead.take({ at, end, data: bytes, heard });
+    if (!sounds()) continue;
     const sound = values.slice(0, samples).map((value) => heard.scale * value);
-    player.postMessage({ sound, revision }, [sound.buffer]);
-    left += samples;
+    player.postMessage({ sound, revision, at, begins }, [sound.buffer]);
+    begins = false;
   }
-  const was = heard;
+  if (!sounds()) show(ahead.end);
   takeNext();
-  postMessage({ parts: data, heard: was }, [data]);
   feed();
+}
+
+// Show the parts that are heard.
+function show(sample) {
+  for (const { data, heard } of ahead.due(sample)) postMessage({ parts: data, heard }, [data]);
 }
 
 // Parts requested before a change of the source still have the old one.
@@ -147,12 +179,13 @@ function feed() {
   if (!hasScene || asked || pace.mode === "paused") return;
   if (pace.mode === "live") {
     const now = performance.now();
-    if (!player) left = Math.max(0, left - ((now - clock) * RATE) / 1000);
+    if (!player) due = Math.max(0, due - ((now - clock) * RATE) / 1000);
     clock = now;
+    const left = player ? ahead.left : due;
     const missing = queue.length * RATE - left;
     if (missing >= FEWEST * PART) {
-      const count = Math.min(10, Math.floor(missing / PART));
-      if (!player) left += count * PART;
+      const count = left < LOW * RATE ? FEWEST : Math.min(MOST, Math.floor(missing / PART));
+      if (!player) due += count * PART;
       pull(count, PART);
     }
     return;

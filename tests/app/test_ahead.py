@@ -1,0 +1,91 @@
+"""Sound computed ahead and its replacement after a change; without a browser."""
+
+from __future__ import annotations
+
+import pytest
+
+from .scripting import result_of
+
+AHEAD = """import { Ahead } from "./ahead.js";
+const ahead = new Ahead();
+const take = (at, name) => ahead.take({ at, end: at + 480, name });
+const due = (sample) => ahead.due(sample).map(({ name }) => name);
+result = [];
+for (let k = 0; k < 6; k++) take(480 * k, `old ${k}`);
+result.push(ahead.left, due(500), ahead.left);
+ahead.cut(1440);
+result.push(ahead.left);
+for (let k = 3; k < 5; k++) take(480 * k, `new ${k}`);
+result.push(ahead.left, due(2400));
+// This change comes too late: the sound from 1920 on has been shown.
+ahead.cut(1920);
+take(1920, "late 4");
+take(2400, "late 5");
+result.push(due(2500));
+ahead.begin(0);
+take(0, "first");
+result.push(due(1));"""
+
+
+def test_parts_are_shown_when_they_are_heard_and_not_if_they_are_replaced(tmp_path):
+    assert result_of(tmp_path, AHEAD) == [
+        2880, ["old 0", "old 1"], 2380, 940, 1900, ["old 2", "new 3", "new 4"], ["late 5"], ["first"],
+    ]  # fmt: skip
+
+
+LEAD = """import { Lead } from "./ahead.js";
+const lead = new Lead();
+result = given.map((spare) => (lead.arrived(spare), lead.length));"""
+
+
+def test_the_lead_grows_at_once_and_shrinks_slowly(tmp_path):
+    late, *early = result_of(tmp_path, LEAD, [-0.05, *[0.06] * 100])
+    assert late == pytest.approx(0.03 + 0.06)
+    assert early[0] == pytest.approx(late - 0.2 * 0.05)
+    assert early == sorted(early, reverse=True)
+    assert early[-1] == pytest.approx(0.01)
+    assert result_of(tmp_path, LEAD, [-5.0]) == pytest.approx([0.25])
+
+
+# The output without levels, limits and high-pass is the queue itself.
+PLAYER = """import { Voice } from "./player.js";
+const told = [];
+const voice = new Voice(48000, ({ revision }) => revision !== undefined && told.push(revision));
+voice.low = 0;
+const port = { postMessage: (one) => told.push(one) };
+voice.told({ stream: port });
+const values = [];
+const next = (count) => {
+  for (let k = 0; k < count; k++) {
+    voice.fill(new Float32Array(1));
+    values.push(voice.last);
+  }
+};
+const take = (at, value, revision) => voice.take({ at, revision, sound: new Float32Array(480).fill(value) });
+for (let k = 0; k < 4; k++) take(480 * k, 1, 1);
+next(500);
+take(960, 2, 2);
+take(1440, 3, 2);
+next(1420);
+const whole = values.splice(0);
+const spares = told.filter((one) => one.spare !== undefined).map(({ spare }) => spare);
+const heard = told.findLast((one) => one.heard !== undefined).heard;
+take(1440, 9, 3);
+take(1920, 9, 3);
+next(480);
+const lates = told.filter((one) => one.spare !== undefined).map(({ spare }) => spare);
+const revisions = told.filter(Number.isFinite);
+result = { whole, spares, heard, after: values, lates, revisions, dropouts: voice.dropouts };"""
+
+
+def test_the_player_replaces_sound_that_is_not_heard_yet(tmp_path):
+    found = result_of(tmp_path, PLAYER)
+    assert found["whole"] == [1.0] * 960 + [2.0] * 480 + [3.0] * 480
+    assert found["spares"] == [960 - 500]
+    assert found["heard"] == 1920
+    assert found["lates"] == [460, 1440 - 1920]
+    assert found["revisions"] == [1, 2, 3]
+    # A late change begins where the sound is, without a jump.
+    assert found["after"][0] == pytest.approx(3.0, abs=0.1)
+    assert found["after"][-1] == pytest.approx(9.0, abs=1.0)
+    assert found["dropouts"] == 0
