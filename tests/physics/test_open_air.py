@@ -13,6 +13,7 @@ import pytest
 
 import stridula as st
 from stridula.acoustics import equivalent_sources, surface_pressures
+from stridula.acoustics.delays import Sampling
 from stridula.acoustics.distances import distances_to
 from stridula.acoustics.fits import fits_of
 from stridula.acoustics.flat_patches import patch_integrals
@@ -347,7 +348,7 @@ def test_a_surface_without_its_pieces_is_read_as_squares():
 def test_a_response_is_delayed_by_the_way_to_the_surface():
     surface, place = open_air.ring_sphere(12), np.array([[0.0, 0.0, 1.1]])
     for distance, interval in ((1.0, 1e-5), (1.0, 2.3e-5)):
-        sent = free_responses(surface, place, np.array([distance]), st.Air(), interval, 0.5, 15e3)
+        sent = free_responses(surface, place, np.array([distance]), st.Air(), Sampling(interval, 15e3, 0.5))
         taps = sent.responses[0]
         whole = taps.taps[:, 0].sum()
         # A pulsating sphere at frequency zero: rho a² / R.
@@ -359,7 +360,8 @@ def test_a_response_is_delayed_by_the_way_to_the_surface():
 def test_beyond_the_highest_mode_fits_end_and_below_it_responses_stay():
     surface, place = open_air.ring_sphere(12), open_air.PLACES[:1]
     whole, short = (
-        free_responses(surface, place, np.array([0.6]), st.Air(), 1e-5, 0.0, 15e3, highest) for highest in (np.inf, 4e3)
+        free_responses(surface, place, np.array([0.6]), st.Air(), Sampling(1e-5, 15e3), highest)
+        for highest in (np.inf, 4e3)
     )
     assert whole.frequencies[-1] > 17e3
     assert 6e3 < short.frequencies[-1] < 6.4e3
@@ -397,7 +399,7 @@ def fits_made(monkeypatch, surface):
     fit = RingSources.fit
     monkeypatch.setattr(RingSources, "fit", lambda self, wavenumber: counted.append(1) or fit(self, wavenumber))
     fits_of.cache_clear()
-    sent = free_responses(surface, open_air.PLACES[:1], np.array([0.6]), st.Air(), 1e-5, 0.0, 15e3)
+    sent = free_responses(surface, open_air.PLACES[:1], np.array([0.6]), st.Air(), Sampling(1e-5, 15e3))
     monkeypatch.setattr(RingSources, "fit", fit)
     return sent, len(counted)
 

@@ -17,7 +17,7 @@ import xarray as xr
 from scipy.special import erf, h2vp, hankel2
 
 import stridula as st
-from stridula.acoustics.delays import interpolation
+from stridula.acoustics.delays import Sampling
 from stridula.acoustics.dipoles import dipole_response, moved_area
 from stridula.acoustics.driven import LEAD, accelerations, first_time, steady, undo_mean
 from stridula.acoustics.panels import line_of, panel_of
@@ -229,7 +229,7 @@ def test_a_long_round_beam_sounds_like_a_cylinder(away):
     section = st.Circle(2.0 * radius)
     panel = line_of(st.ModalBeam(STEEL, section, 100.0, bending_modes=1, axial_modes=0))
     place = np.array([50.0, 0.0, away])
-    response = dipole_response(panel, moved_area(section), place, AIR, interval, interpolation(0.25))
+    response = dipole_response(panel, moved_area(section), place, AIR, Sampling(interval, 0.25 / interval))
     samples = response.first + np.arange(len(response.taps))
     found = np.exp(-2j * pi * frequency * interval * samples) @ response.taps[:, 0] / panel.amplitude
     number = 2.0 * pi * frequency / AIR.speed
@@ -298,7 +298,7 @@ def spectra_of(response) -> np.ndarray:
 
 def test_quadrature_is_fine_enough():
     """With cells of half the size no response moves by 1e-5 of its largest value."""
-    kernel = interpolation(bandwidth_of(Fraction(1), 1.0))
+    sampling = Sampling(1 / RATE, bandwidth_of(Fraction(1), RATE))
     number = 2.0 * pi * bandwidth_of(Fraction(1), RATE) / AIR.speed
     for panel, listener in (
         (panel_of(BEAM), (0.1, 0.05, 0.01)),
@@ -308,21 +308,19 @@ def test_quadrature_is_fine_enough():
     ):
         place = np.array(listener)
         surfaces = [surface_of(panel, place, number, fine) for fine in (1.0, 2.0)]
-        found = [spectra_of(baffled_response(one, place, AIR, 1 / RATE, kernel)) for one in surfaces]
+        found = [spectra_of(baffled_response(one, place, AIR, sampling)) for one in surfaces]
         assert error(*found) < 1e-5
     line, place = line_of(BEAM), np.array([0.1, 0.03, 0.02])
-    found = [
-        spectra_of(dipole_response(line, 1e-4, place, AIR, 1 / RATE, kernel, refinement=fine)) for fine in (1.0, 2.0)
-    ]
+    found = [spectra_of(dipole_response(line, 1e-4, place, AIR, sampling, refinement=fine)) for fine in (1.0, 2.0)]
     assert error(*found) < 1e-5
 
 
 def test_source_and_listener_are_reciprocal():
     """Reciprocity: exchanging a small source and the listener does not change the sound."""
-    kernel, heard = interpolation(0.4), []
+    sampling, heard = Sampling(1 / RATE, 0.4 * RATE), []
     for source, listener in (((0.1, 0.2), (0.4, -0.1)), ((0.4, -0.1), (0.1, 0.2))):
         element = Surface(np.array([source]), np.array([1e-4]), lambda at: np.ones((len(at), 1)))
-        heard.append(baffled_response(element, np.array([*listener, 0.3]), AIR, 1 / RATE, kernel))
+        heard.append(baffled_response(element, np.array([*listener, 0.3]), AIR, sampling))
     assert heard[0].first == heard[1].first
     np.testing.assert_allclose(heard[0].taps, heard[1].taps, rtol=1e-12, atol=1e-12)
 

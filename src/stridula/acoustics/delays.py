@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse
@@ -56,6 +57,37 @@ def interpolation(share: float, attenuation: float = ATTENUATION) -> Interpolati
     """Return the interpolation that is accurate up to `share` of the sample rate, below one half."""
     taps = (attenuation - 8.0) / (2.285 * 2.0 * np.pi * (1.0 - 2.0 * share))
     return Interpolation(half_span=int(np.ceil(taps / 2.0)) + 1, beta=0.1102 * (attenuation - 8.7))
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """Sampling of impulse responses.
+
+    Attributes
+    ----------
+    interval : float
+        Time between samples [s].
+    bandwidth : float
+        Frequency up to which responses are complete [Hz], below half the sample rate.
+    shift : float, optional
+        Number of samples added to every delay.
+    attenuation : float, optional
+        Largest error of a delay within the bandwidth [dB].
+    """
+
+    interval: float
+    bandwidth: float
+    shift: float = 0.0
+    attenuation: float = ATTENUATION
+
+    @cached_property
+    def kernel(self) -> Interpolation:
+        """Interpolation between the samples."""
+        return interpolation(self.bandwidth * self.interval, self.attenuation)
+
+    def delays(self, distances: Array, speed: float) -> Array:
+        """Return the travel times over distances [m] at a speed of sound [m/s], in samples."""
+        return np.asarray(distances / (speed * self.interval) + self.shift)
 
 
 @dataclass(frozen=True)

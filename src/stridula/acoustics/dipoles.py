@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..bodies import Circle, Rectangle
 from ..checks import ArgumentError
 from .air import Air
-from .delays import Interpolation, Response, add, response, span
+from .delays import Response, Sampling, add, response, span
 from .panels import Panel
 from .surfaces import line_of_points
 
@@ -66,9 +66,7 @@ def dipole_response(
     area: float,
     listener: Array,
     air: Air,
-    interval: float,
-    kernel: Interpolation,
-    shift: float = 0.0,
+    sampling: Sampling,
     refinement: float = 1.0,
 ) -> Response:
     """Return the impulse responses from the acceleration of each mode of a beam to the pressure at a listener.
@@ -88,20 +86,17 @@ def dipole_response(
         Its x, y, z [m], y and z from the axis.
     air : Air
         The air.
-    interval : float
-        Time between samples [s].
-    kernel : Interpolation
-        Interpolation of delays between samples.
-    shift : float, optional
-        Number of samples added to every delay.
+    sampling : Sampling
+        Sampling of the responses.
     refinement : float, optional
         Factor by which the elements are smaller than needed.
     """
+    interval, kernel = sampling.interval, sampling.kernel
     # Largest wavenumber that samples can carry.
     points, lengths = line_of_points(panel, listener, pi / (air.speed * interval), refinement)
     across = listener[1] ** 2 + listener[2] ** 2
     away = np.sqrt((points - listener[0]) ** 2 + across)
-    delays = away / (air.speed * interval) + shift
+    delays = sampling.delays(away, air.speed)
     found = response(*span(float(delays.min()), float(delays.max()), kernel), len(panel.wavenumbers))
     shapes = panel.shapes(points, np.zeros_like(points))
     weights = air.density * area / (4.0 * pi) * lengths * listener[2] / away**2

@@ -16,7 +16,7 @@ from ..records.checked import record
 from ..system import System
 from .air import Air
 from .convolution import Convolution
-from .delays import Response
+from .delays import Response, Sampling
 from .listeners import HEIGHT, SPACING, listeners_of
 from .panels import is_flat
 from .recorded_motion import recorded_motion
@@ -118,7 +118,7 @@ def bodies_sound(
         shift = (moved.first - moved.start) / moved.interval
         moving = np.flatnonzero(moved.accelerations[first:last].any(axis=1))
         seen = places if wall is None or one.wall is not None else np.concatenate([places, wall.images(places)])
-        sent = one.heard(moving, seen, air, moved.interval, shift, bandwidth)
+        sent = one.heard(moving, seen, air, Sampling(moved.interval, bandwidth, shift))
         if sent.numbers.size:
             signals = convolved(sent.responses, moved, first + sent.numbers)
             pressure += signals.reshape(-1, *pressure.shape).sum(axis=0)

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import Array
 from ..bodies.body_surfaces import BodySurface
 from .air import Air
-from .delays import Response
+from .delays import Response, Sampling
 from .fits import fits_of
 from .sheets import Sheet
 
@@ -52,9 +52,7 @@ def free_responses(
     places: Array,
     distances: Array,
     air: Air,
-    interval: float,
-    shift: float,
-    bandwidth: float,
+    sampling: Sampling,
     highest: float = np.inf,
 ) -> Sent:
     """Return the impulse responses of the modes of a body in open air.
@@ -73,16 +71,13 @@ def free_responses(
         Distances to the nearest points of the surface [m].
     air : Air
         The air.
-    interval : float
-        Time between samples [s].
-    shift : float
-        Number of samples added to every delay.
-    bandwidth : float
-        Frequency up to which responses are complete [Hz].
+    sampling : Sampling
+        Sampling of the responses.
     highest : float, optional
         Frequency of the highest mode [Hz].
     """
     fits = fits_of(surface)
+    bandwidth = sampling.bandwidth
     whole, stop = min(bandwidth, WHOLE_BEYOND * highest), min(STOP * bandwidth, STOP_BEYOND * highest)
     width = stop - whole
     lasts = TRAVELS * fits.radiator.size / air.speed + PERIODS / width
@@ -95,10 +90,7 @@ def free_responses(
         heard = heard.astype(complex)
         heard *= air.density * np.exp(1j * waves[:, None] * distances)[:, :, None]
         heard *= _taper(frequencies, whole, stop)[:, None, None]
-        pairs = [
-            _taps(heard[:, one], lasts, early, distances[one] / air.speed, interval, shift)
-            for one in range(len(places))
-        ]
+        pairs = [_taps(heard[:, one], lasts, early, distances[one] / air.speed, sampling) for one in range(len(places))]
         left = max(share for _, share in pairs)
         if left < LEFT or number == TIMES - 1:
             break
@@ -112,10 +104,9 @@ def _taper(frequencies: Array, whole: float, stop: float) -> Array:
     return np.asarray(np.cos(0.5 * np.pi * beyond) ** 2)
 
 
-def _taps(
-    heard: Array, lasts: float, early: float, delay: float, interval: float, shift: float
-) -> tuple[Response, float]:
+def _taps(heard: Array, lasts: float, early: float, delay: float, sampling: Sampling) -> tuple[Response, float]:
     """Return a response from its values at frequencies, and its late remainder over its largest value."""
+    interval, shift = sampling.interval, sampling.shift
     first = int(np.ceil((delay - early) / interval + shift))
     count = int(lasts / interval)
     times = (first + np.arange(count) - shift) * interval - delay

@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..bodies import Modes
 from ..bodies.body_surfaces import BodySurface
 from .air import Air
-from .delays import Response
+from .delays import Response, Sampling
 from .distances import distances_to
 from .free_responses import LEFT, Sent, free_responses
 from .sheets import Sheet
@@ -90,12 +90,10 @@ class OpenSurface:
         """Return the distances to its surface."""
         return distances_to(self.surface, places, self.origin)
 
-    def heard(self, moving: Array, places: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
+    def heard(self, moving: Array, places: Array, air: Air, sampling: Sampling) -> Heard:
         """Return its sound, by fits at frequencies, for all its modes, as these fits are cached for the next run."""
         own, distances = places - self.origin, self.distances(places)
-        return by_fits(
-            self.name, self.surface, self.numbers, self.frequency, own, distances, air, interval, shift, bandwidth
-        )
+        return by_fits(self.name, self.surface, self.numbers, self.frequency, own, distances, air, sampling)
 
 
 def by_fits(
@@ -106,9 +104,7 @@ def by_fits(
     places: Array,
     distances: Array,
     air: Air,
-    interval: float,
-    shift: float,
-    bandwidth: float,
+    sampling: Sampling,
 ) -> Heard:
     """Return the sound of the modes of a body in open air, by fits at frequencies.
 
@@ -126,14 +122,16 @@ def by_fits(
         Places of the listeners in the axes of the surface [m].
     distances : ndarray, shape (listeners,)
         Distances to the nearest points of the surface [m].
-    air, interval, shift, bandwidth
-        As in `free_responses`.
+    air : Air
+        The air.
+    sampling : Sampling
+        Sampling of the responses.
     """
     if not numbers.size:
         return Heard(numbers, [])
     # A body that does not vibrate moves as a rigid one at any frequency.
     highest = float(frequency.max(initial=0.0)) or np.inf
-    sent = free_responses(surface, places, distances, air, interval, shift, bandwidth, highest)
+    sent = free_responses(surface, places, distances, air, sampling, highest)
     notes, worst = _doubts(name, frequency, sent)
     return Heard(numbers, sent.responses, worst, notes)
 

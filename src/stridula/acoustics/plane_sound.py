@@ -19,6 +19,7 @@ from ..lines import Outline, outlines_of
 from ..records.checked import record
 from ..system import System
 from .air import Air
+from .delays import Sampling
 from .free_bodies import chosen, convolved, lacks
 from .listeners import HEIGHT, SPACING, check_in_front, ears, listeners_of
 from .panels import panel_of
@@ -221,7 +222,7 @@ def _of_beams(
         beam = slim_beam(body, system.is_held(body), numbers - first, frame, origin)
         distances.append(beam.distances(seen))
         for places in images if numbers.size else []:
-            responses = beam.responses(places, air, moved.interval, shift, bandwidth)
+            responses = beam.responses(places, air, Sampling(moved.interval, bandwidth, shift))
             pressure += convolved(responses, moved, numbers)
         name = system.body_name(body)
         notes += [line_note(name, body, air), *travel_note(name, reach)]

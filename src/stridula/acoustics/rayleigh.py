@@ -7,16 +7,14 @@ import numpy as np
 from ..arrays import Array
 from .air import Air
 from .convolution import Convolution
-from .delays import Interpolation, Response, add, interpolation, response, span
+from .delays import Response, Sampling, add, response, span
 from .surfaces import Surface
 
 # Points whose strengths are held at once.
 POINTS_AT_ONCE = 4096
 
 
-def baffled_response(
-    surface: Surface, listener: Array, air: Air, interval: float, kernel: Interpolation, shift: float = 0.0
-) -> Response:
+def baffled_response(surface: Surface, listener: Array, air: Air, sampling: Sampling) -> Response:
     """Return the impulse responses from the acceleration of each mode to the pressure at a listener.
 
     ``p(r, t) = rho / (2 pi) integral of w''(x', t - R / c) / R dS`` (Rayleigh 1896, Theory of Sound, section 278; in
@@ -30,12 +28,8 @@ def baffled_response(
         Its x, y, z [m].
     air : Air
         The air.
-    interval : float
-        Time between samples [s].
-    kernel : Interpolation
-        Interpolation of delays between samples.
-    shift : float, optional
-        Number of samples added to every delay.
+    sampling : Sampling
+        Sampling of the responses.
 
     Returns
     -------
@@ -43,7 +37,7 @@ def baffled_response(
         In Pa for an acceleration of one unit of the shapes [m/s²].
     """
     away = np.sqrt(np.sum((surface.points - listener[:2]) ** 2, axis=1) + listener[2] ** 2)
-    delays = away / (air.speed * interval) + shift
+    delays, kernel = sampling.delays(away, air.speed), sampling.kernel
     modes = surface.shapes(surface.points[:1]).shape[1]
     found = response(*span(float(delays.min()), float(delays.max()), kernel), modes)
     weights = air.density / (2.0 * np.pi) * surface.areas / away
@@ -78,8 +72,8 @@ def baffled_pressure(
     ndarray, shape (listeners, samples)
         Pressure [Pa] at the times of the accelerations.
     """
-    kernel = interpolation(bandwidth * interval)
-    heard = [baffled_response(surface, listener, air, interval, kernel) for listener in listeners]
+    sampling = Sampling(interval, bandwidth)
+    heard = [baffled_response(surface, listener, air, sampling) for listener in listeners]
     sound = Convolution(heard, acceleration.shape[1])
     sound.add(acceleration, slice(None))
     return sound.signals()

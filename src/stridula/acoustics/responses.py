@@ -12,7 +12,7 @@ from ..arrays import Array
 from ..bodies import ModalPlate
 from ..bodies.body_surfaces import HIGHEST as FINE_ENOUGH
 from .air import Air
-from .delays import interpolation
+from .delays import Sampling
 from .dipoles import dipole_response, moved_area
 from .distances import NEAREST
 from .free_responses import STOP_BEYOND, WHOLE_BEYOND
@@ -48,8 +48,8 @@ class Way(Protocol):
     def check(self, listeners: Array) -> None:
         """Raise ValueError if a listener is at a place without sound, inside a body or behind the baffle."""
 
-    def heard(self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
-        """Return the sound of modes, by number in the panel, at every listener, `shift` samples later."""
+    def heard(self, modes: Array, listeners: Array, air: Air, sampling: Sampling) -> Heard:
+        """Return the sound of modes, by number in the panel, at every listener."""
 
 
 def way_of(track: Any, baffled: bool, name: str = "") -> Way:
@@ -79,12 +79,12 @@ class Baffled:
         """Raise ValueError if a listener is in the wall or behind it."""
         check_in_front(listeners)
 
-    def heard(self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
+    def heard(self, modes: Array, listeners: Array, air: Air, sampling: Sampling) -> Heard:
         """Return the responses at every listener."""
-        panel, kernel = self.panel.only(modes), interpolation(bandwidth * interval)
-        surfaces = [surface_of(panel, listener, 2.0 * np.pi * bandwidth / air.speed) for listener in listeners]
+        panel, wavenumber = self.panel.only(modes), 2.0 * np.pi * sampling.bandwidth / air.speed
+        surfaces = [surface_of(panel, listener, wavenumber) for listener in listeners]
         responses = [
-            baffled_response(surface, listener, air, interval, kernel, shift)
+            baffled_response(surface, listener, air, sampling)
             for surface, listener in zip(surfaces, listeners, strict=True)
         ]
         return Heard(modes, responses)
@@ -104,10 +104,10 @@ class SlimLine:
         """Raise ValueError if a listener is on the beam."""
         check_off_beam(listeners, self.beam.length, self.nearest)
 
-    def heard(self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
+    def heard(self, modes: Array, listeners: Array, air: Air, sampling: Sampling) -> Heard:
         """Return the responses at every listener, with a note on the frequency up to which they are valid."""
-        panel, kernel = self.panel.only(modes), interpolation(bandwidth * interval)
-        responses = [dipole_response(panel, self.area, one, air, interval, kernel, shift) for one in listeners]
+        panel = self.panel.only(modes)
+        responses = [dipole_response(panel, self.area, one, air, sampling) for one in listeners]
         note = f"a line of dipoles: the beam is slim below {slim_below(self.beam, air):.4g} Hz"
         return Heard(modes, responses, notes=[note])
 
@@ -126,13 +126,13 @@ class Thin:
         """Raise ValueError if a listener is on the plate."""
         check_off_panel(self.panel.distances(listeners), self.nearest, listeners)
 
-    def heard(self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
+    def heard(self, modes: Array, listeners: Array, air: Air, sampling: Sampling) -> Heard:
         """Return the responses at every listener, with a note if the sheet has too few points for the bandwidth."""
         sheet, distances = _sheet(self.plate), self.panel.distances(listeners)
         numbers = np.arange(len(sheet.parities))
         frequency = self.panel.angular_frequency[numbers] / (2.0 * np.pi)
-        sent = by_fits(self.name, sheet, numbers, frequency, listeners, distances, air, interval, shift, bandwidth)
-        if sheet.frequency < min(bandwidth, WHOLE_BEYOND * float(frequency.max())):
+        sent = by_fits(self.name, sheet, numbers, frequency, listeners, distances, air, sampling)
+        if sheet.frequency < min(sampling.bandwidth, WHOLE_BEYOND * float(frequency.max())):
             note = f"{self.name}: the points of its sheet are enough only up to {sheet.frequency:.4g} Hz"
             sent = replace(sent, notes=[*sent.notes, note])
         return sent.only(modes)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import Array
 from .air import Air
-from .delays import Response, interpolation
+from .delays import Response, Sampling
 from .dipoles import dipole_response, moved_area
 from .listeners import check_off_beam
 
@@ -76,11 +76,11 @@ class SlimBeam:
         x, y, z = own.T
         return np.asarray(np.sqrt((x - np.clip(x, 0.0, self.length)) ** 2 + y**2 + z**2))
 
-    def responses(self, places: Array, air: Air, interval: float, shift: float, bandwidth: float) -> list[Response]:
-        """Return the impulse responses of its modes at every listener, `shift` samples later."""
-        kernel, area = interpolation(bandwidth * interval), moved_area(self.body.section)
+    def responses(self, places: Array, air: Air, sampling: Sampling) -> list[Response]:
+        """Return the impulse responses of its modes at every listener."""
         line: Any = self
-        return [dipole_response(line, area, one, air, interval, kernel, shift) for one in self.beside(places)]
+        area = moved_area(self.body.section)
+        return [dipole_response(line, area, one, air, sampling) for one in self.beside(places)]
 
 
 def slim_beam(body: Any, held: bool, numbers: Array, frame: Array, origin: Array) -> SlimBeam:

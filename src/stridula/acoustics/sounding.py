@@ -13,6 +13,7 @@ from ..bodies import Modes
 from ..bodies.body_surfaces import HIGHEST as FINE_ENOUGH
 from ..checks import ArgumentError, listed
 from .air import Air
+from .delays import Sampling
 from .listeners import check_off_panel
 from .open_surfaces import HIGHEST, STILL, Heard, open_surface
 from .panels import is_flat
@@ -69,7 +70,7 @@ class Sounding(Protocol):
     def distances(self, places: Array) -> Array:
         """Return the distances of places to it [m]; raise ValueError for places inside it or behind the baffle."""
 
-    def heard(self, moving: Array, places: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
+    def heard(self, moving: Array, places: Array, air: Air, sampling: Sampling) -> Heard:
         """Return its sound at places; `moving` are the numbers of the modes that move."""
 
 
@@ -100,13 +101,13 @@ class Slim:
         """Return the distances to its axis."""
         return self.beam.distances(places)
 
-    def heard(self, moving: Array, places: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
+    def heard(self, moving: Array, places: Array, air: Air, sampling: Sampling) -> Heard:
         """Return the sound of the modes that move."""
         beam = self.beam.only(np.flatnonzero(np.isin(self.beam.numbers, moving)))
         if not beam.numbers.size:
             return Heard(beam.numbers, [])
         notes = [line_note(self.name, beam.body, air)]
-        return Heard(beam.numbers, beam.responses(places, air, interval, shift, bandwidth), notes=notes)
+        return Heard(beam.numbers, beam.responses(places, air, sampling), notes=notes)
 
 
 @dataclass(frozen=True)
@@ -157,7 +158,7 @@ class Flat:
         check_off_panel(found, self.way.nearest, places)
         return found
 
-    def heard(self, moving: Array, places: Array, air: Air, interval: float, shift: float, bandwidth: float) -> Heard:
+    def heard(self, moving: Array, places: Array, air: Air, sampling: Sampling) -> Heard:
         """Return the sound of the modes that bend it."""
         waves = self.way.panel.wavenumbers
         bending = moving[moving < len(waves)]
@@ -165,7 +166,7 @@ class Flat:
             return Heard(bending, [])
         # Modes with the same sine along x are adjacent.
         bending = bending[np.argsort(waves[bending, 0], kind="stable")]
-        return self.way.heard(bending, self._own(places), air, interval, shift, bandwidth)
+        return self.way.heard(bending, self._own(places), air, sampling)
 
     def _own(self, places: Array) -> Array:
         return np.asarray((places - self.corner) @ self.frame.T)

@@ -12,6 +12,7 @@ from scipy.signal import lfilter
 from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate
 from .air import Air
+from .delays import Sampling
 from .driven import DEGREE, FASTEST, LEAD, filters, undo_mean
 from .listeners import listeners_of
 from .panels import panel_of
@@ -69,7 +70,8 @@ class StreamedSound:
         panel = way.panel.only(kept)
         self.taps = undo_mean(steps)
         bandwidth = bandwidth_of(Fraction(1), 1.0 / interval)
-        (path,) = way.heard(kept, listeners, air, interval, EARLY - 0.5 / steps, bandwidth).responses
+        sampling = Sampling(interval, bandwidth, EARLY - 0.5 / steps)
+        (path,) = way.heard(kept, listeners, air, sampling).responses
         taps = low_pass(Fraction(1), 2.0 * BANDWIDTH, ATTENUATION)
         first = path.first - len(taps) // 2
         # An acceleration is known DEGREE samples after its force.

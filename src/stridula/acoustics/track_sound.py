@@ -13,7 +13,7 @@ from ..bodies import ModalBeam, ModalPlate
 from ..records.changes import check_one_track
 from .air import Air
 from .convolution import Convolution
-from .delays import Response
+from .delays import Response, Sampling
 from .driven import DrivenModes
 from .listeners import ears, listeners_of
 from .panels import Panel
@@ -100,7 +100,7 @@ def panel_sound(
     # Modes that share a sine stand together.
     kept = kept[np.argsort(panel.wavenumbers[kept, 0], kind="stable")]
     shift = (motion.first - motion.start) / motion.interval
-    sent = way.heard(kept, listeners, air, motion.interval, shift, bandwidth)
+    sent = way.heard(kept, listeners, air, Sampling(motion.interval, bandwidth, shift))
     pressure = resample(_sum(sent.numbers, motion, sent.responses), ratio)
     time = np.arange(pressure.shape[1]) * motion.interval / float(ratio)
     distances = panel.distances(listeners)

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..acoustics.air import Air
 from ..acoustics.convolution import Convolution
+from ..acoustics.delays import Sampling
 from ..acoustics.dipoles import moved_area
 from ..acoustics.equivalent_sources import Radiator
 from ..acoustics.free_responses import free_responses
@@ -198,7 +199,7 @@ def tones() -> Outcome:
     """Filters in time: steady tones through the impulse responses against the closed form at their frequency."""
     interval, bandwidth, place = 1e-5, 20e3, PLACES[:1]
     distance = np.linalg.norm(place, axis=1) - RADIUS
-    sent = free_responses(ring_sphere(40), place, distance, AIR, interval, 0.0, bandwidth)
+    sent = free_responses(ring_sphere(40), place, distance, AIR, Sampling(interval, bandwidth))
     rows, time = [], np.arange(4096) * interval
     frequencies = np.array([333.3, 2000.0, 7777.0, 15000.0])
     for frequency in frequencies:

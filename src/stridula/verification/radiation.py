@@ -11,7 +11,7 @@ from math import pi
 import numpy as np
 
 from ..acoustics.air import Air
-from ..acoustics.delays import Response, interpolation
+from ..acoustics.delays import Response, Sampling
 from ..acoustics.driven import respond
 from ..acoustics.panels import Panel, panel_of
 from ..acoustics.rayleigh import baffled_pressure, baffled_response
@@ -81,11 +81,11 @@ def transfer(surface: Surface, listeners: Array, frequency: float) -> Array:
     listener.
     """
     interval = 1.0 / (SAMPLES * frequency)
-    kernel = interpolation(2.0 / SAMPLES, ATTENUATION)
     found = []
     for listener in listeners:
         away = np.floor(np.linalg.norm(listener) / (AIR.speed * interval))
-        response = baffled_response(surface, listener, AIR, interval, kernel, -float(away))
+        sampling = Sampling(interval, 2.0 * frequency, -float(away), ATTENUATION)
+        response = baffled_response(surface, listener, AIR, sampling)
         found.append(transform(response, frequency, interval))
     return np.array(found)
 
@@ -241,11 +241,11 @@ def _surface_power() -> Iterator[Row]:
     for number in (1.0, pi):
         frequency = number * AIR.speed / (2.0 * pi * SIDE)
         interval = 1.0 / (SAMPLES * frequency)
-        kernel = interpolation(2.0 / SAMPLES, ATTENUATION)
+        sampling = Sampling(interval, 2.0 * frequency, attenuation=ATTENUATION)
         pressure = []
         for listener in np.stack([x, y, np.full(x.size, height)], axis=1):
             surface = surface_of(panel, listener, 2.0 * pi * frequency / AIR.speed)
-            response = baffled_response(surface, listener, AIR, interval, kernel)
+            response = baffled_response(surface, listener, AIR, sampling)
             pressure.append(transform(response, frequency, interval)[0] * 2j * pi * frequency)
         power = 0.5 * float(np.sum(areas * np.real(pressure) * panel.shapes(x, y)[:, 0]))
         far = float(power_of(panel, frequency)[0])
@@ -296,10 +296,10 @@ def _energy_of_sound(panel: Panel, motion: Array, interval: float) -> float:
     reach = 300.0 * panel.length
     # Fraction of the delay beyond whole samples.
     shift = 20.0 - float(np.floor(reach / (AIR.speed * interval)))
-    kernel, energy = interpolation(0.2), 0.0
-    surface = far_surface(panel, 0.2 / interval)
+    sampling, energy = Sampling(interval, 0.2 / interval, shift), 0.0
+    surface = far_surface(panel, sampling.bandwidth)
     for direction, angle in zip(directions, angles, strict=True):
-        response = baffled_response(surface, middle(panel) + reach * direction, AIR, interval, kernel, shift)
+        response = baffled_response(surface, middle(panel) + reach * direction, AIR, sampling)
         heard = np.convolve(motion[0], response.taps[:, 0])
         energy += angle * reach**2 / AIR.impedance * float(np.sum(heard**2)) * interval
     return energy
