@@ -7,7 +7,7 @@ from math import cos, pi
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy  # its parts are imported on first use
 
 from ..arrays import Array
 from ..bodies import Circle, Rectangle
@@ -45,7 +45,9 @@ def _of_a_circle(section: Circle) -> float:
 @moved_area.register
 def _of_a_rectangle(section: Rectangle) -> float:
     half = section.height / section.width
-    corner = brentq(lambda a: _side(0.0, a) - half * _side(pi / 2.0, a), 1e-9, pi / 2.0 - 1e-9, xtol=1e-14)
+    corner = scipy.optimize.brentq(
+        lambda a: _side(0.0, a) - half * _side(pi / 2.0, a), 1e-9, pi / 2.0 - 1e-9, xtol=1e-14
+    )
     radius = section.width / (2.0 * _side(pi / 2.0, corner))
     return float(2.0 * pi * radius**2 * (1.0 + cos(2.0 * corner)))
 

@@ -24,7 +24,7 @@ from functools import lru_cache
 from typing import Any, Protocol
 
 import numpy as np
-from scipy.signal import lfilter
+import scipy  # its parts are imported on first use
 
 from ..arrays import Array
 from .panels import Panel
@@ -184,7 +184,7 @@ def respond(modes: Oscillators, forces: Array, interval: float, derivative: int 
     found = np.empty_like(forces)
     for row, force, taps in zip(found, forces, filters(modes, interval, derivative), strict=True):
         # The numerator reaches DEGREE samples ahead.
-        row[:] = lfilter(*taps, np.pad(force, (0, DEGREE), mode="edge"))[DEGREE:]
+        row[:] = scipy.signal.lfilter(*taps, np.pad(force, (0, DEGREE), mode="edge"))[DEGREE:]
     return found
 
 

@@ -11,8 +11,8 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+import scipy  # its parts are imported on first use
 import xarray as xr
-from scipy.signal import oaconvolve
 
 from ..arrays import Array
 from ..checks import ArgumentError
@@ -120,7 +120,7 @@ def accelerations(velocities: Array, interval: float, steps: int) -> Array:
         Steps of the march in it.
     """
     padded = np.pad(velocities.astype(float), ((0, 0), (REACH, REACH)), mode="edge")
-    return np.asarray(oaconvolve(padded, _derivative(steps)[None, :], mode="valid", axes=1) / interval)
+    return np.asarray(scipy.signal.oaconvolve(padded, _derivative(steps)[None, :], mode="valid", axes=1) / interval)
 
 
 @lru_cache(maxsize=16)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 import numpy as np
-from scipy.signal import oaconvolve, resample_poly
+import scipy  # its parts are imported on first use
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, at_most, positive
@@ -66,5 +66,5 @@ def resample(signals: Array, ratio: Fraction) -> Array:
     """
     taps = low_pass(ratio, 2.0 * BANDWIDTH, ATTENUATION)
     if ratio == 1:
-        return np.asarray(oaconvolve(signals, taps[None, :], mode="same", axes=1))
-    return np.asarray(resample_poly(signals, ratio.numerator, ratio.denominator, axis=1, window=taps))
+        return np.asarray(scipy.signal.oaconvolve(signals, taps[None, :], mode="same", axes=1))
+    return np.asarray(scipy.signal.resample_poly(signals, ratio.numerator, ratio.denominator, axis=1, window=taps))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 import numpy as np
-from scipy.signal import firwin, kaiserord, resample_poly
+import scipy  # its parts are imported on first use
 
 from ..arrays import Array
 
@@ -42,7 +42,7 @@ def resampled(values: Array, rate: float, wanted: float) -> Array:
     by = ratio(rate, wanted)
     if by == 1:
         return values
-    return np.asarray(resample_poly(values, by.numerator, by.denominator, axis=0, window=low_pass(by)))
+    return np.asarray(scipy.signal.resample_poly(values, by.numerator, by.denominator, axis=0, window=low_pass(by)))
 
 
 def low_pass(by: Fraction, pass_band: float = PASS_BAND, stop_band: float = STOP_BAND) -> Array:
@@ -59,5 +59,5 @@ def low_pass(by: Fraction, pass_band: float = PASS_BAND, stop_band: float = STOP
     """
     # In units of half the rate of the filter.
     stop = 1.0 / max(by.numerator, by.denominator)
-    size, beta = kaiserord(stop_band, (1.0 - pass_band) * stop)
-    return np.asarray(firwin(size | 1, 0.5 * (1.0 + pass_band) * stop, window=("kaiser", beta)))
+    size, beta = scipy.signal.kaiserord(stop_band, (1.0 - pass_band) * stop)
+    return np.asarray(scipy.signal.firwin(size | 1, 0.5 * (1.0 + pass_band) * stop, window=("kaiser", beta)))

@@ -6,8 +6,8 @@ from copy import copy
 from fractions import Fraction
 
 import numpy as np
+import scipy  # its parts are imported on first use
 import scipy.fft
-from scipy.signal import lfilter
 
 from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate
@@ -124,7 +124,7 @@ class StreamedSound:
         modal = -(shapes * pressing[:, None]).T
         moved = np.empty_like(modal)
         for k, row in enumerate(modal):
-            moved[k], self.memory[k] = lfilter(*self.filters[k], row, zi=self.memory[k])
+            moved[k], self.memory[k] = scipy.signal.lfilter(*self.filters[k], row, zi=self.memory[k])
         return self._heard(moved)
 
     def _heard(self, moved: Array) -> Array:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy  # its parts are imported on first use
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
-from scipy.signal import lfilter
 
 from ..arrays import Array
 
@@ -52,4 +52,4 @@ def a_weighted(values: Array, rate: float) -> Array:
 def time_weighted(squares: Array, rate: float, response: str) -> Array:
     """Return the exponential mean of squares, from silence, with the time constant of ``fast`` or ``slow``."""
     keeps = np.exp(-1.0 / (TIME_CONSTANTS[response] * rate))
-    return np.asarray(lfilter([1.0 - keeps], [1.0, -keeps], squares, axis=0))
+    return np.asarray(scipy.signal.lfilter([1.0 - keeps], [1.0, -keeps], squares, axis=0))

@@ -12,8 +12,8 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+import scipy  # its parts are imported on first use
 import scipy.sparse
-from scipy.spatial.transform import Rotation
 
 from ..arrays import Array
 from ..checks import ArgumentError, choice, count, finite, instance, listed, positive
@@ -261,7 +261,8 @@ class SolidMesh:
             Rotation vector: components along x, y and z of the axis times the angle [rad]; (0, 0, pi) is upside down.
         """
         shift, turn = (_three(word, those, finite) for word, those in (("offset", offset), ("rotation", rotation)))
-        return replace(self, nodes=self.nodes @ Rotation.from_rotvec(turn).as_matrix().T + np.array(shift))
+        turned = scipy.spatial.transform.Rotation.from_rotvec(turn).apply(self.nodes)
+        return replace(self, nodes=turned + np.array(shift))
 
     def named(self, name: str, nodes: Any) -> SolidMesh:
         """Return the mesh with an additional set of nodes, such as ``np.flatnonzero(mesh.nodes[:, 2] == 0.0)``."""

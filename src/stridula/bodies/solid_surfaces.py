@@ -6,8 +6,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy  # its parts are imported on first use
 import scipy.sparse
-from scipy.spatial import cKDTree
 
 from ..arrays import Array
 from .body_surfaces import PointSurface, inscribed_radius
@@ -105,7 +105,7 @@ def _merged(surface: PointSurface, size: float) -> PointSurface:
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     owners = which.ravel()
     # A mean that lies on the patch of another point is replaced by the nearest middle of its own patches.
-    astray = np.flatnonzero(owners[cKDTree(surface.points).query(points)[1]] != np.arange(len(points)))
+    astray = np.flatnonzero(owners[scipy.spatial.cKDTree(surface.points).query(points)[1]] != np.arange(len(points)))
     for number in astray.tolist():
         own = np.flatnonzero(owners == number)
         points[number] = surface.points[own[np.linalg.norm(surface.points[own] - points[number], axis=1).argmin()]]
