@@ -26,6 +26,11 @@ export class Queue {
     }
   }
 
+  // Length in addition to that of a machine that keeps up.
+  get extra() {
+    return this.length - LEAST;
+  }
+
   // Whether even the longest queue is too short.
   isBehind(now) {
     return this.length > MOST - 2 * LESS && now - this.dropped < RECENT;

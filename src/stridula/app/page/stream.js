@@ -5,8 +5,7 @@ import { parts } from "./parts.js";
 import { Queue } from "./queue.js";
 
 const PART = 480; // Samples of a part while live.
-const [FEWEST, MOST] = [2, 4]; // Parts per request: few, since a change waits for them.
-const LOW = 0.05; // With less sound ahead [s], the fewest are requested.
+const [FEWEST, MOST] = [2, 6]; // Parts per request: not many, since a change waits for them.
 const RATE = 48000;
 const RETRY = 1000; // Time between attempts to reconnect [ms],
 const ROOM = 5000; // and to a full server.
@@ -24,6 +23,7 @@ let pace = { mode: "live", slow: 1, own: false };
 let asked = 0; // Samples requested but not received.
 const ahead = new Ahead();
 const lead = new Lead();
+let isAnew = false; // Whether the next request is the first after a change, which is to arrive soon.
 let begins = true; // Whether the next part is the first of a connection.
 let heard = { scale: 1 }; // The present source, with its factor for the player,
 let next = null; // and the source of later requests.
@@ -99,7 +99,7 @@ function say(message) {
 
 // Number of samples that a change keeps: the server computes the others anew. None without sound.
 function kept() {
-  return sounds() ? Math.round(ahead.heard + lead.length * RATE) : null;
+  return sounds() ? Math.round(ahead.heard + Math.max(lead.length, queue.extra) * RATE) : null;
 }
 
 function sounds() {
@@ -122,6 +122,7 @@ function told(message) {
   }
   if (message.type === "anew") {
     ahead.cut(message.samples);
+    isAnew = true;
     feed();
     return;
   }
@@ -184,7 +185,8 @@ function feed() {
     const left = player ? ahead.left : due;
     const missing = queue.length * RATE - left;
     if (missing >= FEWEST * PART) {
-      const count = left < LOW * RATE ? FEWEST : Math.min(MOST, Math.floor(missing / PART));
+      const count = isAnew ? FEWEST : Math.min(MOST, Math.floor(missing / PART));
+      isAnew = false;
       if (!player) due += count * PART;
       pull(count, PART);
     }
