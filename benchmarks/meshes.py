@@ -37,7 +37,8 @@ def measured(divisions: tuple[int, int, int]) -> tuple[float, float | None, int,
     command = [sys.executable, __file__, "child", *map(str, divisions), *FORM]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     assert process.stdout is not None
-    printed = process.stdout.read()
+    with process.stdout:
+        printed = process.stdout.read()
     if hasattr(os, "wait4"):
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)

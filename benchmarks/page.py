@@ -33,6 +33,8 @@ ARGUMENTS = ("--no-sandbox", "--disable-gpu", "--disable-background-networking",
 CASES = ("weak-pressure", "squeal", "strong-pressure", "judder")
 BEGIN, END = "<!-- page: begin -->", "<!-- page: end -->"
 TICKS = os.sysconf("SC_CLK_TCK")
+# Time in which a page that has begun settles [s].
+SETTLING = sized(5.0, 1.0)
 
 
 def served() -> tuple[subprocess.Popen, str]:
@@ -42,6 +44,13 @@ def served() -> tuple[subprocess.Popen, str]:
     server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     os.sched_setaffinity(server.pid, {cores[0]})
     return server, re.search(r"http://\S+", server.stdout.readline())[0]
+
+
+def stop(server: subprocess.Popen) -> None:
+    """Stop the server."""
+    server.terminate()
+    server.wait(10)
+    server.stdout.close()
 
 
 def memory(process: int) -> float:
@@ -64,8 +73,7 @@ def idle() -> str:
                 raise SystemExit(f"the server at {address} must give the page, gave something else")
         return f"server: {memory(server.pid):.0f} MB, {processor_time(server.pid):.1f} s to begin"
     finally:
-        server.terminate()
-        server.wait(10)
+        stop(server)
 
 
 @contextmanager
@@ -98,7 +106,7 @@ def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
             if not with_map:
                 page.click("#map-on")
             page.click("#sound")
-            time.sleep(5.0)
+            time.sleep(SETTLING)
             # Latencies count once the page has settled, drop-outs from the first sample.
             page.evaluate("stridula.stats.latencies.length = 0")
             began, ticks, number = time.monotonic(), processor_time(server.pid), 0
@@ -118,8 +126,7 @@ def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
             seen["output"] = [page.evaluate("1000 * stridula.late()")]
             browser.close()
     finally:
-        server.terminate()
-        server.wait(10)
+        stop(server)
     return seen
 
 
@@ -152,7 +159,7 @@ def circumstances(minutes: float, with_map: bool, is_busy: bool) -> str:
 def main() -> None:
     """Measure and print, and write if asked."""
     parser = arguments(__doc__)
-    parser.add_argument("--minutes", type=float, default=sized(2.0, 0.1))
+    parser.add_argument("--minutes", type=float, default=sized(2.0, 0.05))
     parser.add_argument("--map", nargs="+", choices=("on", "off"), default=["on"], help="both are measured in turns")
     parser.add_argument("--busy", action="store_true", help="with a busy process on the core of the server")
     parser.add_argument("--cores", type=int, help="cores for server and browser together; all if left out")

@@ -7,6 +7,7 @@ version control.
 from __future__ import annotations
 
 import json
+import os
 import sys
 from collections.abc import Iterable, Sequence
 from importlib import import_module
@@ -24,6 +25,9 @@ GENERATED = HERE / "_generated"
 PAPER = GENERATED / "paper"
 VERIFICATION = GENERATED / "verification"
 sys.path[:0] = [str(SOURCES), str(HERE)]
+# Linear algebra in one thread, before NumPy is loaded: threads that wait for one another beside other checks take
+# several times the processor time.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import stridula  # noqa: E402
 

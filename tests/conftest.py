@@ -10,8 +10,14 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from threadpoolctl import threadpool_limits
 
 from stridula.cli import main
+
+# Linear algebra in one thread, here and in processes: threads that wait for one another beside other tests take
+# several times the processor time.
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
+threadpool_limits(1)
 
 # No test uses the cache of another one or of the user; processes inherit it.
 os.environ["STRIDULA_CACHE_DIR"] = "off"

@@ -219,10 +219,12 @@ def modules_that_docs_name() -> set[str]:
     return {name for name in names if name.partition(".")[0] not in stridula.__all__} | set(api)
 
 
-# Each name in a copy of a process that has imported the package and nothing else.
+# Each name in a copy of a process that has imported the package and nothing of it; other packages are loaded once.
 EACH_ALONE = """
 import os, sys
+import matplotlib.figure, numba, pydantic, scipy.signal, scipy.sparse.linalg, scipy.stats, xarray
 import stridula as st
+assert "stridula.bodies" not in sys.modules
 for name in sys.argv[1:]:
     child = os.fork()
     if not child:

@@ -16,10 +16,7 @@ import stridula as st
 from stridula import analysis
 
 from .growing import unstable_frequencies
-from .pages import blocks
-
-ROOT = Path(__file__).resolve().parents[2]
-EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
+from .pages import EXAMPLES, ROOT, blocks, output_shown
 
 
 def check_ten_lines(names: Mapping[str, Any], printed: str, folder: Path) -> None:
@@ -212,7 +209,14 @@ def test_every_example_has_a_check():
 def test_example(path, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     names = runpy.run_path(str(path), run_name="__main__")
-    CHECKS[path.name](names, capsys.readouterr().out, tmp_path)
+    printed = capsys.readouterr().out
+    CHECKS[path.name](names, printed, tmp_path)
+    assert all(printed.strip() == text.strip() for text in output_shown(path))
+
+
+def test_output_that_pages_show_is_found():
+    (text,) = output_shown(ROOT / "examples" / "brake.py")
+    assert text.startswith("friction 0.3: sliding")
 
 
 def test_the_readme_shows_the_ten_lines():

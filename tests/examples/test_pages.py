@@ -14,7 +14,7 @@ import stridula as st
 from stridula import studies
 
 from .checks import CHECKS, GIVEN, SCENARIOS, WRITTEN, pad
-from .pages import PAGES, ROOT, blocks, commands, few, shorter, smaller
+from .pages import PAGES, ROOT, blocks, commands, few, shorter, smaller, without_examples
 
 
 @pytest.fixture
@@ -41,13 +41,34 @@ def test_no_code_is_missed(page):
 
 def test_shortening_rules_leave_the_rest():
     assert shorter("f(duration=60.0, step=60.0, duration=20.0)") == "f(duration=0.6, step=60.0, duration=20.0)"
+    assert shorter("f(duration=0.2); g(span=(0.1, 0.2))") == "f(duration=0.02); g(span=(0.01, 0.02))"
     assert few({"a": [*range(12)], "b": ["x", "y", "z"]}) == {"a": [0, 11], "b": ["x", "y", "z"]}
     words = ["sweep", "--vary", "a=1deg:2deg:40", "--vary", "b=1:2:log", "--samples", "64", "--duration", "40"]
     assert smaller(words) == ["sweep", "--vary", "a=1deg:2deg:2", *words[3:6], "4", *words[7:]]
     film = ["animate", "case", "--from", "1 s", "--out", "a.gif"]
-    assert smaller(film) == ["animate", "case", "--from", "1 ms", "--out", "a.gif", "--slowdown", "100"]
+    assert smaller(film) == ["animate", "case", "--from", "1 ms", "--out", "a.gif", "--slowdown", "80"]
     assert smaller(["run", "case", "--plot", "a.png"])[4:] == ["--duration", "20 ms"]
-    assert len(smaller(["run", "case", "--out", "a.nc"])) == 4
+    assert smaller(["run", "case", "--out", "a.nc"])[4:] == ["--duration", "200 ms"]
+    assert smaller(["run", "case", "--duration", "2", "-o", "a.nc"]) == [
+        "run",
+        "case",
+        "--duration",
+        "200 ms",
+        "-o",
+        "a.nc",
+    ]
+    survey = ["survey", "case", "--vary", "a=1:2:40", "-o", "a.nc"]
+    assert smaller(survey)[3] == "a=1:2:1"
+    assert smaller([*survey, "--plot", "a.png"])[3] == "a=1:2:2"
+
+
+def test_examples_that_code_continues_are_kept():
+    example = ("python", (ROOT / "examples" / "ten_lines.py").read_text(encoding="utf-8"))
+    output, more, other = ("text", "1\n"), ("python", "print(run)\n"), ("python", "import stridula as st\n")
+    assert without_examples([example, output, more]) == [example, output, more]
+    assert without_examples([example, output, other, more]) == [example, output, other, more]
+    assert without_examples([example, output, other, output]) == [other, output]
+    assert without_examples([other, output, example, output]) == [other, output]
 
 
 @of_pages("python")
@@ -57,7 +78,7 @@ def test_code(page, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(studies, "Grid", lambda keys: grid(few(keys)))
     names: dict[str, Any] = {}
     printed = [""]
-    for language, text in blocks(page, "python", "text"):
+    for language, text in without_examples(blocks(page, "python", "text")):
         if language == "text":
             assert printed[-1].strip() == text.strip()
         else:

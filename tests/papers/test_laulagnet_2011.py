@@ -145,11 +145,12 @@ def test_ending(last, words):
     assert ending(run) == words
 
 
-def test_reproduce_writes_figures_records_and_claims(tmp_path, monkeypatch):
-    """The whole chain on a short list of claims: written files agree with the runs."""
+def test_reproduce_writes_figures_records_and_claims(runs, tmp_path, monkeypatch):
+    """The whole chain on a short list of claims: written files agree with the runs, which are those of other tests."""
     module = __import__("stridula.papers.laulagnet_2011.reproduce", fromlist=["reproduce"])
     monkeypatch.setattr(module, "CLAIMS", CLAIMS[:2])
     monkeypatch.setattr(module, "FIGURES", FIGURES[:2])
+    monkeypatch.setattr(module, "Runs", lambda report: runs)
     rows = laulagnet_2011.reproduce(tmp_path / "paper")
     names = {path.name for path in (tmp_path / "paper").iterdir()}
     cases = {f"{case}{kind}" for case in CASES for kind in (".nc", ".png", ".wav", "-sound.png")}

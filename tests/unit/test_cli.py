@@ -62,15 +62,30 @@ def test_a_scenario_and_the_schema_are_written_to_a_file(stridula, tmp_path):
     assert stridula("show", "squeal", "--out", "none/a.toml")[0] == 2
 
 
+# Runs verbs in one process, with a zero after the output of each.
+VERBS = """
+import sys
+from stridula.cli import main
+for words in ("show squeal", "schema", "list"):
+    sys.argv[1:] = words.split()
+    try:
+        main()
+    except SystemExit as stop:
+        assert not stop.code
+    sys.stdout.flush()
+    sys.stdout.buffer.write(bytes(1))
+"""
+
+
 @pytest.mark.parametrize("encoding", ["cp1252", "cp932", "ascii"])
 def test_texts_do_not_depend_on_the_code_page(encoding):
     surroundings = os.environ | {"PYTHONIOENCODING": encoding}
-    printed = {}
-    for verb in (("show", "squeal"), ("schema",), ("list",)):
-        command = [sys.executable, "-c", "from stridula.cli import main; main()", *verb]
-        printed[verb[0]] = subprocess.run(command, env=surroundings, capture_output=True, check=True).stdout
-    assert printed["show"].decode() == st.scenario_text("squeal")
-    assert json.loads(printed["schema"].decode()) == st.scenario_schema()
+    done = subprocess.run([sys.executable, "-c", VERBS], env=surroundings, capture_output=True, check=True)
+    show, schema, listed, rest = done.stdout.split(bytes(1))
+    assert show.decode() == st.scenario_text("squeal")
+    assert json.loads(schema.decode()) == st.scenario_schema()
+    assert listed
+    assert not rest
 
 
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-8-sig"])

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 import scipy.sparse
@@ -13,6 +15,8 @@ from ..arrays import Array
 
 # Largest error of a delay within the bandwidth [dB].
 ATTENUATION = 100.0
+# Degree of the polynomials that represent the taps over a sample.
+DEGREE = 20
 
 
 @dataclass(frozen=True)
@@ -133,12 +137,50 @@ def add(to: Response, delays: Array, strengths: Array, kernel: Interpolation, de
     derivative : bool, optional
         Whether the derivative per sample of the strengths arrives.
     """
+    to.taps[...] += arrivals(to, delays, kernel, derivative=derivative) @ strengths
+
+
+def arrivals(
+    to: Response, delays: Array, kernel: Interpolation, group: Array | None = None, derivative: bool = False
+) -> Any:
+    """Return the taps of points as a sparse matrix.
+
+    Parameters
+    ----------
+    to : Response
+        The response whose taps they are.
+    delays : ndarray, shape (points,)
+        Travel times in samples.
+    kernel : Interpolation
+        The interpolation.
+    group : ndarray, shape (points,), optional
+        Number of the group of each point, from 0.
+    derivative : bool, optional
+        Whether the derivative per sample arrives.
+
+    Returns
+    -------
+    csc_array, shape (groups taps, points)
+        The taps of each group one after the other.
+    """
     whole = np.floor(delays).astype(np.int64)
-    rows = whole[:, None] + np.arange(1 - kernel.half_span, kernel.half_span + 1)
-    offsets = rows - delays[:, None]
-    data = kernel.rates(offsets) if derivative else kernel.values(offsets)
+    data = _polynomials(kernel, derivative)(delays - whole)
+    first, groups = whole + 1 - kernel.half_span - to.first, 1
+    if group is not None:
+        first, groups = first + len(to.taps) * group, int(group.max()) + 1
+    rows = first[:, None] + np.arange(data.shape[1])
     columns = np.arange(len(delays) + 1) * rows.shape[1]
-    matrix = scipy.sparse.csc_array(
-        (data.ravel(), (rows - to.first).ravel(), columns), shape=(len(to.taps), len(delays))
-    )
-    to.taps[...] += matrix @ strengths
+    return scipy.sparse.csc_array((data.ravel(), rows.ravel(), columns), shape=(groups * len(to.taps), len(delays)))
+
+
+@lru_cache(maxsize=64)
+def _polynomials(kernel: Interpolation, derivative: bool) -> Callable[[Array], Array]:
+    """Return a function of fractions of a sample, from 0 to 1, that returns the taps, shape (fractions, taps).
+
+    The taps are entire functions of the fraction; their Chebyshev polynomials are exact to rounding.
+    """
+    nodes = np.polynomial.chebyshev.chebpts1(DEGREE + 1)
+    taps = np.arange(1 - kernel.half_span, kernel.half_span + 1) - 0.5 * (nodes + 1.0)[:, None]
+    values = kernel.rates(taps) if derivative else kernel.values(taps)
+    series = np.linalg.solve(np.polynomial.chebyshev.chebvander(nodes, DEGREE), values)
+    return lambda fraction: np.polynomial.chebyshev.chebvander(2.0 * fraction - 1.0, DEGREE) @ series

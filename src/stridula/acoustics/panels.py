@@ -54,6 +54,22 @@ class Panel:
             shapes = shapes * _sines(y - self.edge, across)
         return np.broadcast_to(shapes, (*shapes.shape[:-1], len(along)))
 
+    def sines(self, x: Array, y: Array) -> tuple[Array, list[tuple[Array, Array]]]:
+        """Return the factors of the mode shapes at abscissas x and, in general others, y [m].
+
+        Returns
+        -------
+        across : ndarray, shape (points of y, factors)
+            Their different factors along y, with the amplitude [kg^(-1/2)].
+        along : list of tuple
+            For each of these, the numbers of its modes and their sines along x, shape (points of x, modes).
+        """
+        along, across = self.wavenumbers.T
+        different, number = np.unique(across, return_inverse=True)
+        factors = np.sin((y - self.edge)[:, None] * different) if across.any() else np.ones((len(y), 1))
+        modes = [np.flatnonzero(number == one) for one in range(len(different))]
+        return self.amplitude * factors, [(ours, np.sin(x[:, None] * along[ours])) for ours in modes]
+
     def distances(self, places: Array) -> Array:
         """Return the distances from places x, y, z to the nearest points of the panel [m], shape (places,)."""
         low = np.array([0.0, self.edge])

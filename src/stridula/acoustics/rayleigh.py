@@ -7,7 +7,8 @@ import numpy as np
 from ..arrays import Array
 from .air import Air
 from .convolution import Convolution
-from .delays import Response, Sampling, add, response, span
+from .delays import Interpolation, Response, Sampling, add, arrivals, response, span
+from .panels import Panel
 from .surfaces import Surface
 
 # Points whose strengths are held at once.
@@ -41,10 +42,30 @@ def baffled_response(surface: Surface, listener: Array, air: Air, sampling: Samp
     modes = surface.shapes(surface.points[:1]).shape[1]
     found = response(*span(float(delays.min()), float(delays.max()), kernel), modes)
     weights = air.density / (2.0 * np.pi) * surface.areas / away
+    if surface.panel is not None:
+        _add_panel(found, surface.panel, surface.points, delays, weights, kernel)
+        return found
     for first in range(0, len(away), POINTS_AT_ONCE):
         part = slice(first, first + POINTS_AT_ONCE)
         add(found, delays[part], weights[part, None] * surface.shapes(surface.points[part]), kernel)
     return found
+
+
+def _add_panel(to: Response, panel: Panel, points: Array, delays: Array, weights: Array, kernel: Interpolation) -> None:
+    """Add the sound of points on a panel, whose shapes are products: first over the points of each x, then over x."""
+    x, column = np.unique(points[:, 0], return_inverse=True)
+    order = np.argsort(column, kind="stable")
+    ends = np.searchsorted(column[order], np.arange(len(x) + 1))
+    first = 0
+    while first < len(x):
+        last = max(first + 1, int(np.searchsorted(ends, ends[first] + POINTS_AT_ONCE, side="right")) - 1)
+        part = order[ends[first] : ends[last]]
+        across, along = panel.sines(x[first:last], points[part, 1])
+        there = arrivals(to, delays[part], kernel, column[part] - first) @ (weights[part, None] * across)
+        there = there.reshape(last - first, len(to.taps), -1)
+        for number, (modes, sines) in enumerate(along):
+            to.taps[:, modes] += there[:, :, number].T @ sines
+        first = last
 
 
 def baffled_pressure(

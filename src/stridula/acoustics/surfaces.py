@@ -32,11 +32,14 @@ class Surface:
         Their areas [m²].
     shapes : callable
         Takes points (n, 2), returns the displacement of each mode out of the plane, shape (n, modes).
+    panel : Panel, optional
+        The panel of which they are the shapes.
     """
 
     points: Array
     areas: Array
     shapes: Callable[[Array], Array]
+    panel: Panel | None = None
 
 
 def surface_of(panel: Panel, listener: Array, wavenumber: float, refinement: float = 1.0) -> Surface:
@@ -66,7 +69,7 @@ def surface_of(panel: Panel, listener: Array, wavenumber: float, refinement: flo
     whole = (len(cells), POINTS, POINTS)
     points = np.stack([np.broadcast_to(x[:, :, None], whole), np.broadcast_to(y[:, None, :], whole)], axis=-1)
     areas = (cells[:, 2] * cells[:, 3] / 4.0)[:, None, None] * np.outer(weights, weights)
-    return Surface(points.reshape(-1, 2), areas.ravel(), lambda at: panel.shapes(at[:, 0], at[:, 1]))
+    return Surface(points.reshape(-1, 2), areas.ravel(), lambda at: panel.shapes(at[:, 0], at[:, 1]), panel)
 
 
 def line_of_points(panel: Panel, listener: Array, wavenumber: float, refinement: float = 1.0) -> tuple[Array, Array]:

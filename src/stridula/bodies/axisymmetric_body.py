@@ -294,8 +294,7 @@ class AxisymmetricBody(HasCard):
         solution, mesh = _solution(self), self.mesh
         used, sides = _outline(mesh)
         shapes = []
-        for r, z in mesh.nodes[used].tolist():
-            points, values = solution.elements.shape_functions(r, z)
+        for points, values in zip(*solution.elements.shape_functions(*mesh.nodes[used].T), strict=True):
             shapes.append(np.einsum("cpk,p->ck", solution.shapes[:, points], values)[:, solution.columns])
         orders, _, phases = solution.numbers.T
         return DrawnRings(
@@ -518,8 +517,8 @@ def _surface(body: AxisymmetricBody, largest: float) -> RingSurface:
     places, normals, widths = cut_outline(body.mesh, largest)
     moving = ~solution.modes.massless
     shapes = np.zeros((len(places), solution.shapes.shape[2]))
-    for row, place, (across, along) in zip(shapes, places, normals, strict=True):
-        points, values = solution.elements.shape_functions(*place)
+    parts = solution.elements.shape_functions(*places.T)
+    for row, points, values, (across, along) in zip(shapes, *parts, normals, strict=True):
         u, _, w = np.einsum("cpk,p->ck", solution.shapes[:, points], values)
         row[:] = across * u + along * w
     order, _, side = solution.numbers[moving].T

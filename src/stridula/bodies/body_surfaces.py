@@ -16,6 +16,8 @@ from ..checks import ArgumentError, listed, positive
 HIGHEST, PARTS_IN_WAVE, SOUND = 24e3, 4.0, 340.0
 # Sine of the angle below which points lie in one plane.
 FLAT = 1e-6
+# Pairs of points whose distances are held at once.
+PAIRS_AT_ONCE = 100_000
 # Shapes of the fields.
 SIZES: dict[str, tuple[Any, ...]] = {
     "points": ("rows", 3),
@@ -230,10 +232,15 @@ def inscribed_radius(points: Array, normals: Array, others: Array) -> Array:
         Points all over the surface.
     """
     found = np.full(len(points), np.inf)
-    for number, (point, normal) in enumerate(zip(points, normals, strict=True)):
-        away = point - others
-        depth, square = away @ normal, (away**2).sum(axis=1)
+    at_once = max(1, PAIRS_AT_ONCE // len(others))
+    for first in range(0, len(points), at_once):
+        part = slice(first, first + at_once)
+        depth, square = np.zeros((2, len(points[part]), len(others)))
+        for place, normal, other in zip(points[part].T, normals[part].T, others.T, strict=True):
+            away = place[:, None] - other
+            depth += away * normal[:, None]
+            square += away**2
         inside = depth > FLAT * np.sqrt(square)
-        if inside.any():
-            found[number] = float((square[inside] / (2.0 * depth[inside])).min())
+        radius = square / np.where(inside, 2.0 * depth, 1.0)
+        found[part] = np.where(inside, radius, np.inf).min(axis=1)
     return found

@@ -112,15 +112,18 @@ class FourierElements:
             found.append(self.basis.interior_dofs[0, on[mesh.t2f].all(axis=0)])
         return np.unique(np.concatenate(found))
 
-    def shape_functions(self, r: float, z: float) -> tuple[Array, Array]:
-        """Return the points whose shape functions are not zero at a place of the profile [m], and their values."""
-        cell = self.profile.cell_at(r, z)
-        assert cell is not None
-        corners = self.basis.mesh.p[:, self.basis.mesh.t[:, cell]]
-        there = _reference(corners, np.array([r, z]))
+    def shape_functions(self, r: Any, z: Any) -> tuple[Array, Array]:
+        """Return the points whose shape functions are not zero at places r, z of the profile [m], and their values.
+
+        Both have the shape of r and z with a further dimension, the points of a cell.
+        """
+        places = np.stack([np.ravel(r), np.ravel(z)], axis=1)
+        cells, shape = self.profile.cells_at(places), (*np.shape(r), -1)
+        assert (cells >= 0).all()
+        local = _reference(self.basis.mesh.p[:, self.basis.mesh.t[:, cells]], places.T)
         element = self.basis.elem
-        values = [float(element.lbasis(there[:, None], k)[0][0]) for k in range(len(element.doflocs))]
-        return np.asarray(self.basis.element_dofs[:, cell]), np.array(values)
+        values = [element.lbasis(local, k)[0] for k in range(len(element.doflocs))]
+        return np.asarray(self.basis.element_dofs[:, cells]).T.reshape(shape), np.stack(values, axis=1).reshape(shape)
 
 
 def fourier_elements(profile: ProfileMesh, materials: Sequence[Material]) -> FourierElements:
@@ -187,12 +190,16 @@ def _block(weights: Array, products: list[list[list[Any]]], size: int) -> Any:
 
 
 def _reference(corners: Array, place: Array) -> Array:
-    """Return the local coordinates, each from 0 to 1, of a place in a cell, shape (2,)."""
-    here, edges = np.full(2, 1.0 / 3.0), corners - corners[:, :1]
-    twist = edges[:, 2] - edges[:, 1] - edges[:, 3] if corners.shape[1] == 4 else np.zeros(2)
+    """Return the local coordinates, each from 0 to 1, of places in cells, shape (2, places).
+
+    Corners have the shape (2, corners, places), places (2, places).
+    """
+    here, edges = np.full(place.shape, 1.0 / 3.0), corners - corners[:, :1]
+    twist = edges[:, 2] - edges[:, 1] - edges[:, 3] if corners.shape[1] == 4 else np.zeros(place.shape)
     first, second = edges[:, 1], edges[:, -1]
     for _ in range(NEWTON_STEPS):
         x, y = here
         miss = place - corners[:, 0] - x * first - y * second - x * y * twist
-        here = here + np.linalg.solve(np.stack([first + y * twist, second + x * twist], axis=1), miss)
+        slopes = np.stack([first + y * twist, second + x * twist], axis=1)
+        here = here + np.linalg.solve(np.moveaxis(slopes, -1, 0), miss.T[:, :, None])[:, :, 0].T
     return np.clip(here, 0.0, 1.0)

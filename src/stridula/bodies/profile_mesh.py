@@ -121,13 +121,21 @@ class ProfileMesh:
 
     def cell_at(self, r: float, z: float) -> int | None:
         """Return the number of the cell that contains a point [m], None outside."""
+        cell = int(self.cells_at(np.array([[r, z]]))[0])
+        return None if cell < 0 else cell
+
+    def cells_at(self, places: Array) -> Array:
+        """Return the numbers of the cells that contain points (r, z) [m], -1 outside, shape (points,)."""
         sides = self.nodes[_sides(self.cells)]
         along = sides[:, :, 1] - sides[:, :, 0]
-        to_point = np.array([r, z]) - sides[:, :, 0]
-        depth = _cross(along, to_point) / np.linalg.norm(along, axis=-1)
-        deepest = depth.min(axis=1)
-        cell = int(np.argmax(deepest))
-        return cell if deepest[cell] >= -SAME_PLACE * self.size else None
+        lengths = np.linalg.norm(along, axis=-1)
+        found = np.full(len(places), -1)
+        for number, place in enumerate(places):
+            deepest = (_cross(along, place - sides[:, :, 0]) / lengths).min(axis=1)
+            cell = int(np.argmax(deepest))
+            if deepest[cell] >= -SAME_PLACE * self.size:
+                found[number] = cell
+        return found
 
     def _sides_of_cells(self, cells: Array) -> Array:
         return np.unique(np.sort(_sides(self.cells[cells]).reshape(-1, 2)), axis=0)
