@@ -15,6 +15,9 @@ from stridula.cli import main
 
 # No test uses the cache of another one or of the user; processes inherit it.
 os.environ["STRIDULA_CACHE_DIR"] = "off"
+# Linear algebra in one thread: while both cores run tests, threads only wait for each other. Read by numpy when it is
+# imported, later than this file, and by all processes started from here.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # The same examples in every run: a test that fails must fail again.
 settings.register_profile("repeatable", derandomize=True, database=None)
