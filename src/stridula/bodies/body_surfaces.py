@@ -230,9 +230,11 @@ def inscribed_radius(points: Array, normals: Array, others: Array) -> Array:
         Points all over the surface.
     """
     found = np.full(len(points), np.inf)
+    # Long rows: sums over the few coordinates of a point are slow.
+    others = np.ascontiguousarray(others.T)
     for number, (point, normal) in enumerate(zip(points, normals, strict=True)):
-        away = point - others
-        depth, square = away @ normal, (away**2).sum(axis=1)
+        away = point[:, None] - others
+        depth, square = normal @ away, (away**2).sum(axis=0)
         inside = depth > FLAT * np.sqrt(square)
         if inside.any():
             found[number] = float((square[inside] / (2.0 * depth[inside])).min())
