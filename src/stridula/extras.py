@@ -63,7 +63,7 @@ def named_extras() -> Iterator[None]:
 
 
 def on_first_use(package: str, homes: Mapping[str, str], name: str) -> Any:
-    """Return a public name of a package from its module, which is imported now.
+    """Return a public name of a package from its module, which is imported now, and keep it in the package.
 
     Raises
     ------
@@ -76,4 +76,6 @@ def on_first_use(package: str, homes: Mapping[str, str], name: str) -> Any:
         raise AttributeError(f"module {package!r} has no attribute {name!r}")
     with named_extras():
         module = import_module(f".{homes[name]}", package)
-    return getattr(module, name)
+    # The next use finds it there, without a call.
+    value = vars(import_module(package))[name] = getattr(module, name)
+    return value

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from itertools import islice
+from functools import cache
 
 import pytest
 
@@ -16,11 +16,16 @@ PARTS = 10
 KINDS = runner.modules()
 
 
+@cache
+def drawn(name):
+    """Inputs of a kind, drawn for all parts at once."""
+    return list(enumerate(KINDS[name].inputs(SEED, COUNTS.get(name, FEW))))
+
+
 @pytest.mark.parametrize("part", range(PARTS))
 @pytest.mark.parametrize("name", list(KINDS))
 def test_wrong_inputs_are_refused_in_one_line(name, part):
-    count = COUNTS.get(name, FEW)
-    for number, given in islice(enumerate(KINDS[name].inputs(SEED, count)), part, None, PARTS):
+    for number, given in drawn(name)[part::PARTS]:
         try:
             assert KINDS[name].check(given) in (ACCEPTED, REFUSED)
         except BaseException as error:

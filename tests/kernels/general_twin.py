@@ -410,6 +410,10 @@ class Touch:
         a = contact.inclination
         self.upright, self.tangent = np.array([-np.sin(a), np.cos(a)]), np.array([np.cos(a), np.sin(a)])
         self.tip = matrices.trace(contact.tip)
+        frozen = isinstance(contact.track, st.BodyPoint)
+        # The other point of a frozen contact, whose rows are the same everywhere.
+        self.other = matrices.trace(contact.track) if frozen else np.zeros((2, matrices.size))
+        self.along = self.tangent @ (self.tip - self.other)
         self.along_beam = isinstance(contact.track, st.ModalBeam)
         self.along_plate = isinstance(contact.track, st.ModalPlate)
         self.law = contact.friction
@@ -421,9 +425,7 @@ class Touch:
     def rows(self, x):
         """Rows of gap and of tangential displacement with the track at abscissa `x`, and slopes of the track."""
         track, m = self.contact.track, self.matrices
-        against, slopes = np.zeros((2, m.size)), np.zeros((2, m.size))
-        if isinstance(track, st.BodyPoint):
-            against = m.trace(track)
+        against, slopes = self.other.copy(), np.zeros((2, m.size))
         if self.along_beam:
             first, (bending, axial) = m.spans[track].start, track.harmonics
             size = np.sqrt(2 / track.total_mass)
@@ -466,12 +468,9 @@ class Touch:
             track += other.normal_velocity * other.normal_history.integral(t)[0] * self.upright
         return self.tangent @ tip, self.tangent @ track, self.upright @ (tip - track)
 
-    def abscissa(self, q, t):
-        """Abscissa of the tip; of a frozen contact, displacement against the other point."""
-        row = self.tip
-        if isinstance(self.contact.track, st.BodyPoint):
-            row = row - self.matrices.trace(self.contact.track)
-        return self.contact.at + self.tangent @ row @ q + self.motions(t)[0]
+    def abscissa(self, q, tip):
+        """Abscissa of the tip, moved by `tip` along the tangent; of a frozen contact, against the other point."""
+        return self.contact.at + self.along @ q + tip
 
 
 def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
@@ -495,7 +494,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             tip_after, track_after, _ = one.motions(h)
             one.material = one.anchor = x + slip_row @ q
             one.last_slip = slip_row @ (q - q_before) + (tip - tip_before) - (track - track_before)
-            one.place, one.place_before = one.abscissa(q, 0.0), one.abscissa(q_before, -h)
+            one.place, one.place_before = one.abscissa(q, tip), one.abscissa(q_before, tip_before)
             speed = slip_row @ velocity + (tip_after - tip_before - track_after + track_before) / (2 * h)
             if has_state(one.law):
                 # The state is kept between the steps: half a step back along the line, never below half of it.
@@ -524,7 +523,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         answers = np.array([load @ row - b @ start_under(row, still, still) for row in rows])
         first = a @ q - b @ q_before + load @ force(0.0)
         moved = [np.subtract(one.motions(h), one.motions(0.0)) for one in closed]
-        there = [one.rows(one.abscissa(first, h)) for one in closed]
+        there = [one.rows(one.abscissa(first, one.motions(h)[0])) for one in closed]
         gaps = [one.contact.gap + row[0] @ first + move[2] for one, row, move in zip(closed, there, moved, strict=True)]
         slips = [row[1] @ first - rows[2 * i + 1] @ q + moved[i][0] - moved[i][1] for i, row in enumerate(there)]
         _, found = solve_contacts(gaps, slips, [0.0] * len(closed), rows @ answers.T, closed, h)[0]
@@ -544,8 +543,8 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         now, then = n * h, (n + 1) * h
         f = force(now)
         trial = a @ q - b @ q_before + load @ f
-        traces = [one.rows(one.abscissa(trial, then)) for one in touches]
         motions = [one.motions(then) for one in touches]
+        traces = [one.rows(one.abscissa(trial, motion[0])) for one, motion in zip(touches, motions, strict=True)]
         rows = np.array([row for trace in traces for row in trace[:2]])
         gaps = [
             one.contact.gap + motion[2] + trace[0] @ trial
@@ -557,12 +556,13 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         ]
         strayed = [one.material - one.anchor if one.status == STICKING else 0.0 for one in touches]
         # All combinations are tried at one step in ten, to count the consistent ones.
-        found = solve_contacts(gaps, slips, strayed, rows @ load @ rows.T, touches, h, guess if n % 10 else None)
+        compliance = rows @ load @ rows.T
+        found = solve_contacts(gaps, slips, strayed, compliance, touches, h, guess if n % 10 else None)
         if not found:
             # The response of another foot may bring a sliding foot below its static limit: it still slides.
             feet = range(len(touches))
             for let_go in (subset for size in range(1, len(feet) + 1) for subset in combinations(feet, size)):
-                found = solve_contacts(gaps, slips, strayed, rows @ load @ rows.T, touches, h, None, let_go)
+                found = solve_contacts(gaps, slips, strayed, compliance, touches, h, None, let_go)
                 if found:
                     break
         out.solutions.append(len(found))
@@ -578,7 +578,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         work["contact"] += push @ middle
         landings, shares = [], []
         for i, (one, (status, normal, tangential)) in enumerate(zip(touches, found, strict=True)):
-            w = (rows @ load @ rows.T)[2 * i : 2 * i + 2, 2 * i : 2 * i + 2]
+            w = compliance[2 * i : 2 * i + 2, 2 * i : 2 * i + 2]
             gap = gaps[i] + rows[2 * i] @ (q_new - trial)
             closed = one.closed
             if one.status != SEPARATED and status == SEPARATED:
@@ -599,7 +599,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             work["drive"] += frame
             work["contact"] -= frame
             material = one.contact.at + motion[0] - motion[1] + trace[1] @ q_new
-            slip, place = material - one.material, one.abscissa(q_new, then)
+            slip, place = material - one.material, one.abscissa(q_new, motion[0])
             work["friction"] += tangential * slip if has_state(one.law) else abs(tangential * slip)
             slope = (normal * trace[2][1] - tangential * trace[2][0]) @ q_new
             work["convection"] += slope * (place - one.place_before) / 2
@@ -638,9 +638,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         )
         heights = []
         for one, motion in zip(touches, motions, strict=True):
-            frozen = isinstance(one.contact.track, st.BodyPoint)
-            row = one.rows(0.0)[0] if frozen else one.upright @ one.tip
-            heights.append(one.contact.gap + motion[2] + row @ q_new)
+            heights.append(one.contact.gap + motion[2] + one.upright @ (one.tip - one.other) @ q_new)
         out.height.append(heights)
         q_before, q = q, q_new
     out.last = (q_before, q)

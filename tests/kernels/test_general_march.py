@@ -7,6 +7,7 @@ The twin follows the two-position form with one matrix for all modes; see `test_
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -37,6 +38,14 @@ ENERGIES = ("contact_work", "friction_loss", "convection_work", "damping_loss")
 def both(system, scheme, form, step, steps=STEPS):
     run = st.simulate(system, steps * step, scheme=scheme, step=step, sample_rate=1 / step, probes=[])
     return run, twin.march(system, form, step, steps)
+
+
+@cache
+def both_of(name, exact=True):
+    """Run and trail of one of `SYSTEMS`, which several tests compare."""
+    make, step = SYSTEMS[name]
+    scheme, form = BOTH[exact].values
+    return both(make(), scheme, form, step)
 
 
 def disagreements(run, trail) -> dict[str, float]:
@@ -74,11 +83,10 @@ def disagreements(run, trail) -> dict[str, float]:
     return found
 
 
-@pytest.mark.parametrize(("scheme", "form"), BOTH)
+@pytest.mark.parametrize("exact", [pytest.param(False, id="central"), pytest.param(True, id="exact")])
 @pytest.mark.parametrize("name", SYSTEMS)
-def test_kernel_and_twin_agree_at_every_step(name, scheme, form):
-    make, step = SYSTEMS[name]
-    run, trail = both(make(), scheme, form, step)
+def test_kernel_and_twin_agree_at_every_step(name, exact):
+    run, trail = both_of(name, exact)
     assert disagreements(run, trail) == {}
     # All combinations of states were tried at one step in ten: never more than one was consistent.
     assert set(trail.solutions) == {1}
@@ -158,17 +166,16 @@ def slightly(change, system):
 def test_comparison_rejects_a_wrong_twin(change, name):
     """Negative control: a shared value is slightly different in the twin."""
     make, step = SYSTEMS[name]
-    system = make()
-    run, _ = both(system, SCHEMES[1], twin.exact, step, 1)
-    run = st.simulate(system, STEPS * step, step=step, sample_rate=1 / step, probes=[])
-    assert disagreements(run, twin.march(slightly(change, system), twin.exact, step, STEPS))
+    run, _ = both_of(name)
+    assert disagreements(run, twin.march(slightly(change, make()), twin.exact, step, STEPS))
 
 
 @pytest.mark.parametrize("wrong", ["polarisations", "slopes"])
 def test_comparison_detects_wrong_motion_in_the_plane(wrong, monkeypatch):
     """Negative control: shear modes that move the other way across; slopes of the plane left out of the ledger."""
-    make, step = SYSTEMS["sprung plate soft in its plane"]
-    run, trail = both(make(), SCHEMES[1], twin.exact, step)
+    name = "sprung plate soft in its plane"
+    make, step = SYSTEMS[name]
+    run, trail = both_of(name)
     assert disagreements(run, trail) == {}
     if wrong == "polarisations":
         sheet = make().contacts[0].track
@@ -205,7 +212,7 @@ def test_comparison_distinguishes_an_exact_damping_matrix_from_its_diagonal():
     other = st.System(moved, drives, [replace(system.connections[0], first=projected.at("back"))])
     run = st.simulate(other, STEPS * step, step=step, sample_rate=1 / step, probes=[])
     assert disagreements(run, twin.march(other, twin.exact, step, STEPS)) == {}
-    assert disagreements(run, twin.march(system, twin.exact, step, STEPS))
+    assert disagreements(run, both_of("thrown block")[1])
 
 
 def test_comparison_distinguishes_the_mean_of_the_state_from_its_last_value(monkeypatch):
@@ -215,7 +222,7 @@ def test_comparison_distinguishes_the_mean_of_the_state_from_its_last_value(monk
         new = twin.state_after(law, state, v, h)
         return law.stiffness * state + law.damping * (new - state) / h + law.viscous * v
 
-    run, trail = both(systems.oscillator(systems.BRISTLES), SCHEMES[1], twin.exact, 2e-4)
+    run, trail = both_of("mass on a belt, bristles")
     assert disagreements(run, trail) == {}
     monkeypatch.setattr(twin, "ratio_with_state", at_start)
     assert disagreements(run, twin.march(systems.oscillator(systems.BRISTLES), twin.exact, 2e-4, STEPS))

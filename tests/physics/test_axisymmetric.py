@@ -381,10 +381,13 @@ def test_pairs_have_one_frequency_and_stand_together():
 
 
 def test_shapes_are_orthogonal_and_of_unit_mass():
-    """By an integral over the whole body, with independent Gauss points."""
-    x, weight = np.polynomial.legendre.leggauss(5)
+    """By an integral over the whole body, with independent Gauss points.
+
+    Products of two quadratic shapes and r are of degree 5 in r, and have six waves round the axis.
+    """
+    x, weight = np.polynomial.legendre.leggauss(3)
     body = replace(HATTED, profile=replace(HATTED.profile, size=0.01), cutoff=6000.0, orders=3)
-    angles = 2.0 * np.pi * np.arange(9) / 9.0
+    angles = 2.0 * np.pi * np.arange(7) / 7.0
     total = 0.0
     for cell in body.mesh.cells:
         low, high = body.mesh.nodes[cell].min(axis=0), body.mesh.nodes[cell].max(axis=0)

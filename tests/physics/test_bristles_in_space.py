@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from math import atan, cos, pi, radians, sin
 
 import numpy as np
@@ -111,8 +112,8 @@ def rider(start, width: float, law=SOFT) -> st.System:
     return st.System(contact, [st.Force(body.centre, y=-WEIGHT), placed], springs)
 
 
-def by_equations(start, width: float, times, law=SOFT):
-    """Place, slip velocity and bristles of that rider, from its equations of motion."""
+def by_equations(start, width: float, duration: float, law=SOFT):
+    """Place, slip velocity and bristles of that rider, from its equations of motion, as a function of time."""
 
     def rate(t, y):
         place, velocity, z = y[:2], y[2:4], y[4:]
@@ -122,23 +123,29 @@ def by_equations(start, width: float, times, law=SOFT):
         pulled = SPRING * (np.array([RADIUS * cos(TURNING * t), width * sin(TURNING * t)]) - place)
         return np.concatenate([velocity, (pulled - WEIGHT * ratio) / MASS, turned])
 
-    return solve_ivp(rate, (0.0, times[-1]), start, "DOP853", t_eval=times, rtol=1e-11, atol=1e-14).y.T
+    moved = solve_ivp(rate, (0.0, duration), start, "DOP853", dense_output=True, rtol=1e-11, atol=1e-14).sol
+    return lambda times: moved(times).T
+
+
+@cache
+def on_an_ellipse():
+    """Start near the steady motion on an ellipse, after some rounds, its width, two periods, and the motion in them."""
+    width, period = 0.6 * RADIUS, 2.0 * pi / TURNING
+    before = np.array([RADIUS, 0.0, 0.0, TURNING * width, 0.0, 0.0])
+    start = by_equations(before, width, 5.0 * period)(5.0 * period)
+    return start, width, 2.0 * period, by_equations(start, width, 2.0 * period)
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_a_rider_on_an_ellipse_moves_by_its_equations(scheme):
     """1e-3 at the default step of 0.5 ms, and of second order: speed and direction vary, and bristles follow them."""
-    width, period = 0.6 * RADIUS, 2.0 * pi / TURNING
-    before = np.array([RADIUS, 0.0, 0.0, TURNING * width, 0.0, 0.0])
-    # After some rounds it is near its steady motion.
-    start = by_equations(before, width, [5.0 * period])[-1]
+    start, width, duration, moved = on_an_ellipse()
     words = {"scheme": scheme, "sample_rate": 2e3, "probes": []}
 
     def errors(**own):
-        run = st.simulate(rider(start, width), 2.0 * period, **words, **own)
+        run = st.simulate(rider(start, width), duration, **words, **own)
         # The march keeps the bristles between the steps.
-        known = by_equations(start, width, run.time.values)
-        between = by_equations(start, width, run.time.values - 0.5 * run.attrs["step"])
+        known, between = moved(run.time.values), moved(run.time.values - 0.5 * run.attrs["step"])
         place, bristles = run.contact_position.values - known[:, :2], run.friction_state.values - between[:, 4:]
         return np.abs(place).max() / np.abs(known[:, :2]).max(), np.abs(bristles).max() / np.abs(known[:, 4:]).max()
 

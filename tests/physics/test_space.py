@@ -46,19 +46,18 @@ def reference(gap, slip, w, mu, before=(0.0, 0.0)):
         return held[0], -held[1:]
 
     def slide(angle):
-        u = np.array([cos(angle), sin(angle)])
+        u = np.array([np.cos(angle), np.sin(angle)])
         normal = -gap / (w[0, 0] - mu * w[0, 1:] @ u)
-        velocity = slip + np.asarray(before) + w[1:, 0] * normal - mu * normal * w[1:, 1:] @ u
+        velocity = np.add(slip, before) + np.multiply.outer(normal, w[1:, 0]) - (mu * normal * (w[1:, 1:] @ u)).T
         return normal, u, velocity
 
     def across(angle):
         _, u, velocity = slide(angle)
-        return u[0] * velocity[1] - u[1] * velocity[0]
+        return u[0] * velocity[..., 1] - u[1] * velocity[..., 0]
 
     angles = np.linspace(-pi, pi, 2001)
-    values = [across(angle) for angle in angles]
     found = []
-    for k in np.flatnonzero(np.diff(np.sign(values))):
+    for k in np.flatnonzero(np.diff(np.sign(across(angles)))):
         normal, u, velocity = slide(brentq(across, angles[k], angles[k + 1], xtol=1e-15))
         if normal > 0.0 and u @ velocity >= 0.0:
             found.append((normal, mu * normal * u))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Callable, Iterator, Sequence
+from functools import wraps
+from typing import Any, TypeVar
 
 from .fields import BY_NAME, ONE, TEXT, holds_tables, pattern_of
 from .quantities import UNITS
@@ -11,6 +12,7 @@ from .schema import TOUCHING, json_schema
 
 Node = dict[str, Any]
 Path = tuple[str | int, ...]
+Answer = TypeVar("Answer")
 SHARED = ("material", "section", "damping", "cutoff")
 SHARED_BY_CONTACTS = ("friction",)
 TAGS = ("shape", "law", "kind", "form", "quantity")
@@ -20,11 +22,37 @@ PLATES = ("modal plate",)
 LONGEST_LIST = 64
 
 
+def once(answer: Callable[..., Answer]) -> Callable[..., Answer]:
+    """Compute an answer about nodes once: those of the schema, and those joined from them, never change."""
+    # Nodes are kept with their answers, so that no other node has their identity.
+    known: dict[tuple[int, ...], tuple[tuple[Node, ...], Answer]] = {}
+
+    @wraps(answer)
+    def looked_up(*nodes: Node) -> Answer:
+        key = tuple(map(id, nodes))
+        if key not in known:
+            known[key] = nodes, answer(*nodes)
+        return known[key][1]
+
+    return looked_up
+
+
 def properties(node: Node | None, table: Any = None) -> dict[str, Node]:
     """Return the keys known in a table: those of its own kind if it has a tag, else of all kinds.
 
     For a table whose keys are names, such as the bodies, return those present.
     """
+    if node is None:
+        return {}
+    return _of_all_kinds(node) if table is None else _properties(node, table)
+
+
+@once
+def _of_all_kinds(node: Node) -> dict[str, Node]:
+    return _properties(node, None)
+
+
+def _properties(node: Node, table: Any) -> dict[str, Node]:
     variants = _variants(node)
     kinds = [variant["properties"] for variant in variants if "properties" in variant]
     named = [variant["additionalProperties"] for variant in variants if variant.get("additionalProperties")]
@@ -101,7 +129,11 @@ def paths(tables: Any, node: Node | None = None, path: Path = ()) -> Iterator[tu
     """Yield every key that can be set, whether present or not."""
     for name, child in properties(json_schema() if node is None else node, tables).items():
         yield (*path, name), child
-        yield from _below(look_up(tables, (name,)), child, (*path, name))
+        value = look_up(tables, (name,))
+        if value is None:
+            yield from (((*path, name, *below), node) for below, node in _left_out(child))
+        else:
+            yield from _below(value, child, (*path, name))
 
 
 def look_up(tables: Any, path: Sequence[str | int]) -> Any:
@@ -132,6 +164,12 @@ def plain(location: Sequence[str | int], tables: Any) -> Path:
     return tuple(path)
 
 
+@once
+def _left_out(node: Node) -> list[tuple[Path, Node]]:
+    """Return the keys below one that is left out."""
+    return list(_below(None, node, ()))
+
+
 def _below(value: Any, node: Node, path: Path) -> Iterator[tuple[Path, Node]]:
     """Yield the keys of a value that is a table, and the entries of one that is a list."""
     yield from paths(value, node, path)
@@ -157,8 +195,11 @@ def _entry(node: Node | None, table: Any, number: int) -> Node | None:
 
 
 def _variants(node: Node | None) -> list[Node]:
-    if node is None:
-        return []
+    return [] if node is None else _choices(node)
+
+
+@once
+def _choices(node: Node) -> list[Node]:
     if "$ref" in node:
         node = json_schema()["$defs"][node["$ref"].rpartition("/")[2]]
     choices = node.get("oneOf", node.get("anyOf"))
@@ -172,6 +213,7 @@ def _differs(known: dict[str, Node], table: Any) -> bool:
     return any(tag in known and tag in table and table[tag] not in words(known[tag]) for tag in TAGS)
 
 
+@once
 def _joined(one: Node, other: Node) -> Node:
     return one if one == other else {**one, "anyOf": [_bare(one), _bare(other)]}
 
