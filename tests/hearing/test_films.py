@@ -201,14 +201,14 @@ def test_labels_do_not_overlap(on_plate):
 
 def test_the_verb_films_a_scenario_and_its_record_alike(stridula, tmp_path):
     assert stridula("run", "squeal", "--duration", "2 ms", "--out", "run.nc")[0] == 0
-    window = ("--from", "1.6 ms", "--duration", "0.16 ms", "--exaggeration", "100")
+    window = ("--from", "1.6 ms", "--duration", "0.4 ms", "--exaggeration", "100")
     code, out, err = stridula("animate", "squeal", "--out", "a.gif", *window)
     assert (code, err) == (0, "")
-    assert out == "a.gif: 4 frames, 0.16 ms from 0.0016 s, slowed down 1000 times, vibration drawn 100 times\n"
+    assert out == "a.gif: 10 frames, 0.4 ms from 0.0016 s, slowed down 1000 times, vibration drawn 100 times\n"
     assert stridula("animate", "run.nc", "--out", "b.gif", *window)[0] == 0
     with Image.open(tmp_path / "a.gif") as one, Image.open(tmp_path / "b.gif") as other:
         # A record's title is the scenario's.
-        for frame in range(4):
+        for frame in range(10):
             one.seek(frame)
             other.seek(frame)
             np.testing.assert_array_equal(np.asarray(one.convert("RGB")), np.asarray(other.convert("RGB")))
