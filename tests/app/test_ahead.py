@@ -73,9 +73,18 @@ const heard = told.findLast((one) => one.heard !== undefined).heard;
 take(1440, 9, 3);
 take(1920, 9, 3);
 next(480);
+const late = values.splice(0);
+// A change of which only the first part comes in time: the sound before it continues, and then that of the change.
+take(2400, 4, 3);
+take(2880, 4, 3);
+next(240);
+take(2640, 5, 4);
+next(600);
+take(3120, 5, 4);
+next(360);
 const lates = told.filter((one) => one.spare !== undefined).map(({ spare }) => spare);
 const revisions = told.filter(Number.isFinite);
-result = { whole, spares, heard, after: values, lates, revisions, dropouts: voice.dropouts };"""
+result = { whole, spares, heard, late, interrupted: values, lates, revisions, dropouts: voice.dropouts };"""
 
 
 def test_the_player_replaces_sound_that_is_not_heard_yet(tmp_path):
@@ -83,9 +92,18 @@ def test_the_player_replaces_sound_that_is_not_heard_yet(tmp_path):
     assert found["whole"] == [1.0] * 960 + [2.0] * 480 + [3.0] * 480
     assert found["spares"] == [960 - 500]
     assert found["heard"] == 1920
-    assert found["lates"] == [460, 1440 - 1920]
-    assert found["revisions"] == [1, 2, 3]
+    assert found["revisions"] == [1, 2, 3, 4]
     # A late change begins where the sound is, without a jump.
-    assert found["after"][0] == pytest.approx(3.0, abs=0.1)
-    assert found["after"][-1] == pytest.approx(9.0, abs=1.0)
+    assert found["late"][0] == pytest.approx(3.0, abs=0.1)
+    assert found["late"][-1] == pytest.approx(9.0, abs=1.0)
+    # 120 samples of the part that comes late are over.
+    interrupted = found["interrupted"]
+    assert interrupted[239] == pytest.approx(4.0, abs=2.0)
+    assert interrupted[719] == pytest.approx(5.0, abs=0.1)
+    assert max(interrupted[720:840]) < 5.1
+    assert interrupted[839] == pytest.approx(4.0, abs=0.7)
+    assert interrupted[-1] == pytest.approx(5.0, abs=0.3)
+    steps = [abs(one - other) for one, other in zip(interrupted[1:], interrupted, strict=False)]
+    assert max(steps[240:]) < 0.1
+    assert found["lates"] == [460, 1440 - 1920, 0, 3120 - 3240]
     assert found["dropouts"] == 0

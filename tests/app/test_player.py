@@ -23,7 +23,7 @@ result = given.map(({ levelled, sound }) => {
   voice.told({ volume: 1, levelled });
   const found = [];
   for (let at = 0; at + 4800 <= sound.length; at += 4800) {
-    voice.take({ sound: Float32Array.from(sound.slice(at, at + 4800)), revision: 1 });
+    voice.take({ sound: Float32Array.from(sound.slice(at, at + 4800)), revision: 1, at });
     const out = new Float32Array(4800);
     for (let k = 0; k < 4800; k += 96) voice.fill(out.subarray(k, k + 96));
     const reduction = Math.max(0, ...reductions.map((one) => -20 * Math.log10(one)));

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import time as clock
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
 from contextlib import suppress
 from dataclasses import asdict
-from typing import Any
+from typing import Any, TypeVar
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
@@ -30,6 +30,7 @@ from .presets import presets
 from .tour import STOPS
 from .turned import keys_of
 
+Result = TypeVar("Result")
 # Largest lead of a page over real time [s], and its largest speed relative to real time.
 AHEAD, FASTEST = 1.0, 1.5
 # Parts after which other pages have their turn; parts that take long are cut so that turns come this often [s], and
@@ -143,7 +144,7 @@ class Session:
         refused: dict[str, list[str]] = {}
         came = clock.monotonic()
         try:
-            found = await asyncio.to_thread(held, scene, self.scene)
+            found = await _in_time(self._is_quick(scene), held, scene, self.scene)
             refused, played = found.refused, found.played
             if refused and self.scene is not None and _is_same(found.scene, self.scene):
                 raise ScenarioError(found.problems)
@@ -175,6 +176,11 @@ class Session:
             return None
         return await asyncio.to_thread(_begun, played, self.source)
 
+    def _is_quick(self, scene: Scene) -> bool:
+        """Return whether a scene takes less time to read than a part of its sound takes to play."""
+        is_fast = self.instrument is not None and self.instrument.played.is_fast
+        return is_fast and self.scene is not None and is_of_one_case(scene, self.scene)
+
     def _kept(self, message: Scene | Listen | Restart, since: float = 0.0) -> int | None:
         """Return the number of samples that a page keeps, a time after its message came; None if it keeps all."""
         if message.kept is None or (self.speed is not None and self.speed < REPLAYED):
@@ -197,7 +203,8 @@ class Session:
         before = 0 if self.instrument is None else self.instrument.played_samples
         if other is None:
             assert self.instrument is not None
-            goes_on, speed = await asyncio.to_thread(_changed, self.instrument, played, revision, kept)
+            is_quick = self.instrument.played.is_fast and played.system.bodies == self.instrument.played.system.bodies
+            goes_on, speed = await _in_time(is_quick, _changed, self.instrument, played, revision, kept)
         else:
             (begun, speed), goes_on = other, False
             if self.instrument is None:
@@ -361,6 +368,11 @@ async def _sent(sending: Coroutine[Any, Any, None]) -> None:
         await sending
     except RuntimeError:
         raise WebSocketDisconnect(GONE) from None
+
+
+async def _in_time(is_quick: bool, function: Callable[..., Result], *words: Any) -> Result:
+    """Return the result of a function, from a thread unless it is quick: threads wait for each other."""
+    return function(*words) if is_quick else await asyncio.to_thread(function, *words)
 
 
 def _begun(played: Playable, source: str) -> tuple[Instrument, float | None]:

@@ -49,7 +49,8 @@ export class Voice {
     this.mask = this.queue.length - 1;
     this.written = this.read = 0;
     this.end = null; // End of the sound in the queue, in samples of the server; null before the first.
-    this.jump = 0; // Difference that a late change leaves, and
+    this.fresh = null; // End of the sound that is not to be replaced.
+    this.jump = 0; // Difference that sound which comes late leaves, and
     this.settles = Math.exp(-1 / (FADE * sampleRate)); // its decrease per sample.
     this.marks = [];
     this.volume = this.wanted = 0;
@@ -87,20 +88,27 @@ export class Voice {
     }
   }
 
-  // Add sound from sample `at` of the server on, in place of the sound that follows it.
+  // Add sound from sample `at` of the server on, in place of the sound that is there. Sound that is to be replaced stays
+  // until other sound comes, so that there is no gap if that is late.
   take({ sound, revision, at, begins }) {
-    if (begins || this.end === null) this.end = at;
-    const { heard } = this;
-    const end = Math.max(heard, at + sound.length);
-    if (at < this.end) sound = this.replace(sound, at - heard, revision);
-    [this.end, this.newest] = [end, revision];
-    if (this.late && sound.length) {
-      this.jump = (this.last ?? 0) - sound[0];
-      this.late = false;
+    if (begins || this.end === null || at > this.end) this.end = this.fresh = at;
+    const spare = at - this.heard;
+    if (spare < 0 || (at < this.end && revision !== this.newest)) this.spare = spare;
+    const late = Math.min(sound.length, Math.max(0, -spare));
+    const first = this.written - (this.end - at) + late;
+    this.marks = this.marks.filter((mark) => mark.at < first);
+    this.marks.push({ revision, at: first });
+    for (let i = late; i < sound.length; i++) this.queue[(first + i - late) & this.mask] = sound[i];
+    this.isLate ||= late > 0;
+    if (this.isLate && late < sound.length) {
+      this.join(sound[late]);
+      this.isLate = false;
     }
-    if (this.written + sound.length - this.read > this.queue.length) this.read = this.written;
-    this.marks.push({ revision, at: this.written });
-    for (const value of sound) this.queue[this.written++ & this.mask] = value;
+    this.newest = revision;
+    this.fresh = Math.max(this.heard, at + sound.length);
+    this.written += Math.max(0, this.fresh - this.end);
+    this.end = Math.max(this.end, this.fresh);
+    if (this.written - this.read > this.queue.length) this.read = this.written;
   }
 
   // The next sample to be heard, in samples of the server.
@@ -108,14 +116,9 @@ export class Voice {
     return this.end - (this.written - this.read);
   }
 
-  // Remove the sound later than some samples ahead; return the part of other sound, from there on, that is in time.
-  replace(sound, early, revision) {
-    this.written = this.read + Math.max(0, early);
-    this.marks = this.marks.filter((mark) => mark.at < this.written);
-    if (revision !== this.newest) this.spare = early;
-    if (early >= 0) return sound;
-    this.late = true;
-    return sound.subarray(-early);
+  // Continue with a value without a step.
+  join(value) {
+    this.jump = (this.last ?? value) - value;
   }
 
   // Fill a block with the next samples.
@@ -125,6 +128,7 @@ export class Voice {
     for (let i = 0; i < out.length; i++) {
       let value = 0;
       if (this.runs && this.read < this.written) {
+        if (this.heard === this.fresh) this.join(this.queue[this.read & this.mask]);
         value = this.queue[this.read++ & this.mask] + this.jump;
         this.jump *= this.settles;
         this.fade = Math.min(1, this.fade + step);

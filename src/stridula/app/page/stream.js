@@ -6,6 +6,7 @@ import { Queue } from "./queue.js";
 
 const PART = 480; // Samples of a part while live.
 const [FEWEST, MOST] = [2, 6]; // Parts per request: not many, since a change waits for them.
+const FIRST = 4; // Parts requested first after a change, which must last until the next ones come.
 const RATE = 48000;
 const RETRY = 1000; // Time between attempts to reconnect [ms],
 const ROOM = 5000; // and to a full server.
@@ -23,7 +24,7 @@ let pace = { mode: "live", slow: 1, own: false };
 let asked = 0; // Samples requested but not received.
 const ahead = new Ahead();
 const lead = new Lead();
-let isAnew = false; // Whether the next request is the first after a change, which is to arrive soon.
+let isAnew = false; // Whether the next request is the first after a change.
 let begins = true; // Whether the next part is the first of a connection.
 let heard = { scale: 1 }; // The present source, with its factor for the player,
 let next = null; // and the source of later requests.
@@ -185,7 +186,7 @@ function feed() {
     const left = player ? ahead.left : due;
     const missing = queue.length * RATE - left;
     if (missing >= FEWEST * PART) {
-      const count = isAnew ? FEWEST : Math.min(MOST, Math.floor(missing / PART));
+      const count = isAnew ? FIRST : Math.min(MOST, Math.floor(missing / PART));
       isAnew = false;
       if (!player) due += count * PART;
       pull(count, PART);
