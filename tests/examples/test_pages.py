@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import tomllib
 from pathlib import Path
@@ -60,6 +61,17 @@ def test_shortening_rules_leave_the_rest():
     survey = ["survey", "case", "--vary", "a=1:2:40", "-o", "a.nc"]
     assert smaller(survey)[3] == "a=1:2:1"
     assert smaller([*survey, "--plot", "a.png"])[3] == "a=1:2:2"
+
+
+def test_values_that_the_rules_replace_are_good():
+    replaced = {"--duration": [], "--slowdown": []}
+    for words in (words for page in PAGES for words in commands(page) if {"run", "animate"} & set(words)):
+        for name, values in replaced.items():
+            values += [value for before, value in itertools.pairwise(words) if before == name]
+    assert all(replaced.values())
+    for value in replaced["--duration"]:
+        assert st.load_scenario("squeal", {"simulation.duration": value}).duration > 0.0
+    assert all(float(value) > 0.0 for value in replaced["--slowdown"])
 
 
 def test_examples_that_code_continues_are_kept():
