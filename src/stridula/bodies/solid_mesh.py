@@ -261,8 +261,8 @@ class SolidMesh:
             Rotation vector: components along x, y and z of the axis times the angle [rad]; (0, 0, pi) is upside down.
         """
         shift, turn = (_three(word, those, finite) for word, those in (("offset", offset), ("rotation", rotation)))
-        turned = scipy.spatial.transform.Rotation.from_rotvec(turn).apply(self.nodes)
-        return replace(self, nodes=turned + np.array(shift))
+        matrix = scipy.spatial.transform.Rotation.from_rotvec(turn).as_matrix()
+        return replace(self, nodes=self.nodes @ matrix.T + np.array(shift))
 
     def named(self, name: str, nodes: Any) -> SolidMesh:
         """Return the mesh with an additional set of nodes, such as ``np.flatnonzero(mesh.nodes[:, 2] == 0.0)``."""
