@@ -207,9 +207,9 @@ class Instrument:
     def speed(self) -> float:
         """Return the seconds played per second, measured over some moments, and restart."""
         # The first may compile.
-        self._moment(SHORT)
-        samples = SHORT if self._moment(SHORT) > LONG else MOMENT
-        taken = [self._moment(samples) for _ in range(MOMENTS)]
+        self._taken(SHORT)
+        samples = SHORT if self._taken(SHORT) > LONG else MOMENT
+        taken = [self._taken(samples) for _ in range(MOMENTS)]
         self._rewind()
         return samples / RATE / sorted(taken)[MOMENTS // 2]
 
@@ -218,7 +218,7 @@ class Instrument:
         self.source.begin()
         self._forget()
 
-    def _moment(self, samples: int) -> float:
+    def _taken(self, samples: int) -> float:
         """Play a moment without output and return the processor time it takes [s], whatever else runs."""
         began = clock.thread_time()
         chunk, _ended = self.live.advance(samples)

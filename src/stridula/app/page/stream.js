@@ -149,11 +149,11 @@ function came(data) {
     return;
   }
   asked = 0;
-  for (const { head, values, bytes } of parts(data)) {
+  for (const { head, values, span } of parts(data)) {
     const [revision, seconds, , samples] = head;
     const end = Math.round(seconds * RATE);
     const at = end - samples;
-    ahead.take({ at, end, data: bytes, heard });
+    ahead.take({ at, end, data: data.slice(...span), heard });
     if (!sounds()) continue;
     const sound = values.slice(0, samples).map((value) => heard.scale * value);
     player.postMessage({ sound, revision, at, begins }, [sound.buffer]);
