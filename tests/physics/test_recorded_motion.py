@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import stridula as st
 from stridula.acoustics.recorded_motion import VARIABLE, recorded_motion
@@ -66,6 +67,101 @@ def test_it_is_kept_in_single_precision_with_the_names_of_bodies(squeal):
     known = one.modal_velocity.values[:, 0]
     np.testing.assert_allclose(one[VARIABLE].values[:, 3], known, atol=1e-6 * np.abs(known).max())
     assert st.load_scenario(run).probes == tuple(motions(system.slider, system.track))
+
+
+@pytest.fixture(scope="module")
+def apart():
+    """The squealing pair recorded at 200 kHz, its motion at 50 kHz."""
+    scenario = st.load_scenario("squeal", {"duration": "60 ms", "step": "5 us"})
+    return scenario, scenario.simulate(sample_rate=200e3, motion_rate=48e3)
+
+
+def test_motion_at_a_rate_of_its_own_is_that_of_a_record_at_this_rate(squeal, apart):
+    (system, known, _), run = squeal, apart[1]
+    assert run[VARIABLE].dims == ("motion_time", "modal_motion_probe")
+    np.testing.assert_array_equal(run[VARIABLE], known[VARIABLE])
+    np.testing.assert_allclose(run.motion_time, known.time, rtol=1e-12)
+    # The middle of the track is recorded as usual.
+    assert run.acceleration.dims == ("time", "acceleration_probe")
+    found, same = (st.radiate(one, system, PLACE) for one in (run, known))
+    assert found.attrs["motion"] == "recorded"
+    # The mean place of the slider, from which it is heard, is that of more samples.
+    np.testing.assert_allclose(found, same, atol=1e-4 * np.abs(same).max())
+    np.testing.assert_array_equal(*(st.radiate(one, system.track, PLACE) for one in (run, known)))
+    again = st.load_scenario(run)
+    assert again.motion_rate == pytest.approx(50e3)
+    xr.testing.assert_equal(again.simulate(duration=2e-3)[VARIABLE], run[VARIABLE].isel(motion_time=slice(100)))
+
+
+def test_a_part_of_such_a_record_has_the_sound_of_that_part(apart):
+    scenario, run = apart
+    whole = st.radiate(run, scenario.system, PLACE)
+    part = st.radiate(run.sel(time=slice(0.02, 0.05)), scenario.system, PLACE)
+    assert (part.time[0], part.time[-1]) == pytest.approx((0.02 - 2e-5, 0.05 - 2e-5), abs=2e-5)
+    later = part.values[500:, 0]
+    np.testing.assert_allclose(later, whole.interp(time=part.time).values[500:, 0], atol=0.02 * np.abs(later).max())
+
+
+def test_bodies_are_all_driven_again_where_such_motion_is_not_that_of_all(apart):
+    scenario, run = apart
+    less = run.isel({f"{VARIABLE}_probe": run.modal_motion_body.values == "track"})
+    assert st.radiate(less, scenario.system, PLACE).attrs["motion"] == "driven again"
+    assert st.radiate(less, scenario.system, PLACE, bodies=[scenario.system.track]).attrs["motion"] == "recorded"
+    only = scenario.simulate(duration=1e-3, motion_rate=50e3, probes=motions(scenario.system.track))
+    assert set(only.modal_motion_body.values) == {"track"}
+
+
+def test_a_continued_record_continues_such_motion_and_an_interrupted_one_has_all_up_to_its_end():
+    scenario = st.load_scenario("squeal", {"duration": "20 ms"})
+    words = {"motion_rate": 20e3, "sample_rate": 100e3, "step": 5e-6, "probes": []}
+    whole, first = scenario.simulate(**words), scenario.simulate(duration=0.01, **words)
+    later = scenario.simulate(duration=0.01, start=first, **words)
+    xr.testing.assert_equal(later[VARIABLE], whole[VARIABLE].isel(motion_time=slice(200, None)))
+
+    def interrupt(progress):
+        raise KeyboardInterrupt
+
+    with pytest.raises(st.Interrupted) as stopped:
+        scenario.simulate(duration=1.0, watchers=[interrupt], **words)
+    record = stopped.value.record
+    assert record.sizes["motion_time"] == record.sizes["time"] // 5
+    kept = min(record.sizes["motion_time"], whole.sizes["motion_time"]) - 20
+    np.testing.assert_array_equal(record[VARIABLE][:kept], whole[VARIABLE][:kept])
+    # From the place of the interruption, wherever in an interval it is.
+    goes_on = scenario.simulate(duration=0.01, start=record, **words)
+    assert goes_on.motion_time[0] == pytest.approx(record.time[-1] + 5e-5)
+
+
+def test_such_a_record_goes_through_a_file_and_through_a_sweep(apart, tmp_path):
+    scenario, run = apart
+    st.save(run, tmp_path / "run.nc")
+    xr.testing.assert_identical(st.load(tmp_path / "run.nc")[VARIABLE], run[VARIABLE])
+    (found,) = st.simulate_many([scenario.system], 2e-3, motion_rate=50e3, sample_rate=200e3, step=5e-6)
+    np.testing.assert_allclose(found[VARIABLE], run[VARIABLE][:100], atol=1e-4 * np.abs(run[VARIABLE]).max())
+    # Records of sweeps have 20 kHz.
+    words = {"duration": 2e-3, "motion_rate": 48e3}
+    found = st.sweep(
+        lambda first: (scenario.system if first else None, words),
+        {"first": [True]},
+        {"size": lambda run: float(run[VARIABLE].max())},
+        probes=True,
+    )
+    assert found["size"].item() > 0.0
+
+
+@pytest.mark.parametrize(
+    ("rate", "words"),
+    [
+        (0.0, "motion_rate must be"),
+        (float("nan"), "motion_rate must be"),
+        (2e5, "motion_rate must be at most the sample rate, 100000 Hz, got 200000.0"),
+        ("fast", "motion_rate must be"),
+    ],
+)
+def test_rates_of_motion_that_cannot_be_are_refused(rate, words):
+    scenario = st.load_scenario("squeal")
+    with pytest.raises(st.ArgumentError, match=f"^{words}"):
+        st.simulate(scenario.system, 1e-3, motion_rate=rate)
 
 
 def test_only_a_track_of_the_same_modes_is_heard_so(squeal):

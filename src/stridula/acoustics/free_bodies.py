@@ -19,7 +19,7 @@ from .convolution import Convolution
 from .delays import Response, Sampling
 from .listeners import HEIGHT, SPACING, listeners_of
 from .panels import is_flat
-from .recorded_motion import recorded_motion
+from .recorded_motion import at_one_rate, recorded_motion
 from .redriven import Moved, redriven
 from .resampling import bandwidth_of, ratio_of, resample
 from .sounding import Sounding, sounding_of, wall_of
@@ -55,7 +55,7 @@ def free_sound(
     normal, tangent = map(in_space, system.contacts[0].frame[:2])
     # Bodies that touch nothing have the origin of the world.
     origins = dict.fromkeys(heard, np.zeros(3)) | origins_in_space(system)
-    run, sounding, slid = record("run", run), [], []
+    run, sounding, slid = at_one_rate(record("run", run), system, heard), [], []
     for body in heard:
         name, (travel, reach) = system.body_name(body), travel_of(run, system, body)
         sounding.append(

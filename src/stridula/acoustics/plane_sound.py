@@ -23,7 +23,7 @@ from .delays import Sampling
 from .free_bodies import chosen, convolved, lacks
 from .listeners import HEIGHT, SPACING, check_in_front, ears, listeners_of
 from .panels import panel_of
-from .recorded_motion import RecordedModes, recorded_motion
+from .recorded_motion import RecordedModes, at_one_rate, recorded_motion
 from .redriven import redriven
 from .resampling import bandwidth_of, ratio_of, resample
 from .responses import line_note
@@ -74,6 +74,7 @@ def plane_sound(
     run = record("run", run)
     tracks, beams = _tracks(system), _beams(system)
     heard, silent = chosen(system, bodies, [*tracks, *beams])
+    run = at_one_rate(run, system, heard)
     outlines = {one.body: one for one in outlines_of(system)[0]}
     wall = _wall(tracks, outlines, baffled)
     if listener is None:

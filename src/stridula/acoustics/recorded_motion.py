@@ -17,6 +17,7 @@ import xarray as xr
 from ..arrays import Array
 from ..checks import ArgumentError
 from ..records.changes import check_one_system
+from ..records.dataset import MOTION_TIME
 from ..records.low_pass import gain
 from ..records.probes import ModalMotion
 from ..system import System
@@ -59,8 +60,8 @@ class RecordedModes:
     words = "recorded"
 
     def __init__(self, run: xr.Dataset, columns: slice) -> None:
-        self.start, self.interval, self.steps, _ = sampled(run)
-        self._velocities = _velocities(run)[columns]
+        self.start, self.interval, self.steps, velocities = _recorded(run)
+        self._velocities = velocities[columns]
         self.samples, self.first = self._velocities.shape[1], self.start + self.interval
         self.begins = 0.0 if self._velocities.any() else None
         self.notes: list[str] = []
@@ -99,8 +100,7 @@ def recorded_motion(run: Any, system: System, bodies: Sequence[Any]) -> Moved | 
         parts.append(columns)
         spans[name] = (last, last := last + frequency.size)
     check_one_system(run)
-    start, interval, steps, _ = sampled(run)
-    values = _velocities(run)
+    start, interval, steps, values = _recorded(run)
     found = np.concatenate([accelerations(values[columns], interval, steps) for columns in parts])
     pushed = 0.0 if found.any() else None
     left_out = np.zeros(len(found), dtype=bool)
@@ -135,9 +135,40 @@ def _derivative(steps: int) -> Array:
     return np.concatenate([half[::-1], [0.0], -half])[::-1] * -1.0
 
 
-def _velocities(run: xr.Dataset) -> Array:
-    """Return all velocities recorded, shape (modes, samples)."""
-    found = np.asarray(run[VARIABLE].transpose(MODES, "time").values)
+def at_one_rate(run: xr.Dataset, system: System, bodies: Sequence[Any]) -> xr.Dataset:
+    """Return a record from which the sounds of bodies of a system have one sample rate and can be added.
+
+    If motion was recorded at a rate of its own, but not that of all these bodies, none is used.
+    """
+    if VARIABLE not in run.variables or MOTION_TIME not in run[VARIABLE].dims:
+        return run
+    names = ((system.body_name(body), body.modes(system.is_held(body)).frequency) for body in bodies)
+    lacks = any(_columns(run, name, frequency) is None for name, frequency in names)
+    return run.drop_vars(VARIABLE) if lacks else run
+
+
+def _recorded(run: xr.Dataset) -> tuple[float, float, int, Array]:
+    """Return the start [s], the sample interval [s] and the steps in it, and all velocities, shape (modes, samples).
+
+    They are those within the time of the record.
+    """
+    start, interval, steps, _ = sampled(run)
+    values = run[VARIABLE]
+    if MOTION_TIME not in values.dims:
+        return start, interval, steps, _finite(values, "time")
+    ends = run[MOTION_TIME].values
+    slack = 0.5 * interval
+    values = values.isel({MOTION_TIME: (ends > start + slack) & (ends < run["time"].values[-1] + slack)})
+    # As evenly sampled as any record.
+    own = values.to_dataset().rename({MOTION_TIME: "time"}).assign_attrs(run.attrs)
+    first, interval_of_motion, _, _ = sampled(own)
+    every = round(interval_of_motion / interval)
+    return first, interval_of_motion, steps * every, _finite(values, MOTION_TIME)
+
+
+def _finite(values: xr.DataArray, along: str) -> Array:
+    """Return velocities, shape (modes, samples)."""
+    found = np.asarray(values.transpose(MODES, along).values)
     if not np.isfinite(found).all():
         raise ArgumentError(VARIABLE, "be finite", got=f"{found[~np.isfinite(found)][0]}")
     return found

@@ -51,6 +51,7 @@ class Options(TypedDict, total=False):
     probes: Sequence[Probe] | None
     contact_solve: GaussSeidel | None
     surface_rate: float | str | None
+    motion_rate: float | None
     device: str
     workers: int | None
     watchers: Sequence[Watcher]
@@ -119,6 +120,7 @@ def simulate_many(
     probes: Sequence[Probe] | None = None,
     contact_solve: GaussSeidel | None = None,
     surface_rate: float | str | None = None,
+    motion_rate: float | None = None,
     device: str = "cpu",
     workers: int | None = None,
     watchers: Sequence[Watcher] = (),
@@ -158,6 +160,8 @@ def simulate_many(
         Settings of the simultaneous solution of several contacts.
     surface_rate : float or str, optional
         Recording of surfaces, as for `simulate`; if left out, plain records have all points as contacts.
+    motion_rate : float, optional
+        Rate at which the motion of bodies is recorded [Hz], as for `simulate`.
     device : {"cpu", "cuda"}, optional
         Device for runs of the same kind: the processors, or an NVIDIA GPU with all at once, one in each thread.
     workers : int, optional
@@ -213,7 +217,7 @@ def simulate_many(
         require_cuda()
     if surface_rate is None and not labelled:
         surface_rate = ALL_POINTS
-    asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve, surface_rate)
+    asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve, surface_rate, motion_rate)
     results = _Results(errors == "return")
     record = partial(Run.record, provenance=provenance) if labelled else Run.plain_record
     with time_shown(progress, title or f"simulate {counted(len(systems), 'system')}") as more:

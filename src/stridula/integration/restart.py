@@ -21,7 +21,7 @@ from ..records import Probe
 from ..records.provenance import scenario_toml
 from ..records.state import LAYOUT, State
 from ..system import System
-from .decimation import Decimator
+from .probe_records import memory_of
 from .timing import Timing
 
 STATE = ("modal", "remainder", "carried", "energies")
@@ -104,7 +104,7 @@ def _check_state(start: xr.Dataset, arrays: Assembly, timing: Timing, probes: in
     """Raise a ValueError if a state does not have the layout of the march."""
     modal, contacts = (2, arrays.mode_count), len(arrays.contacts)
     # Without probes, or after an immediate interruption, the low-pass needs no values.
-    memory = Decimator(timing.ratio).memory if probes and start.sizes["time"] else 0
+    memory = memory_of(timing) if probes and start.sizes["time"] else 0
     shapes = {
         "modal": modal,
         "remainder": modal,

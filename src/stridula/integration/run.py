@@ -24,9 +24,9 @@ from ..system import System
 from ..version import __version__
 from .belief import Belief
 from .contact_solve import GaussSeidel
-from .decimation import Decimator
 from .equilibrium_start import in_equilibrium
 from .marches import Chunk, Imposed, Impositions
+from .probe_records import ProbeRecords
 from .restart import imposed_at, motion_about, moved_on, state_of
 from .start import state_at_start
 from .stops import ENDED, contact_words, divergence_words, rank_words
@@ -82,12 +82,12 @@ class Run:
             placed = in_equilibrium(system, arrays)
             self.state = state_at_start(placed, scheme, timing.step, self.blocks, solve)
             self.first_step, self.initial_energy = 0, float(self.state.energies[at.STORED])
-            self.decimator = Decimator(timing.ratio)
+            before = None
         else:
             self.state = state_of(start, system, arrays, scheme, timing, probes)
             self.arrays, self.offset = moved_on(start, system, arrays, self.blocks.modes, self.state, timing.step)
             self.first_step, self.initial_energy = int(start.attrs["last_step"]), float(start.attrs["initial_energy"])
-            self.decimator = Decimator(timing.ratio, np.array(start["state_raw"].values, dtype=float))
+            before = np.array(start["state_raw"].values, dtype=float)
         # Rounding errors of large energies remain when these are gone.
         met = 0.0 if start is None else float(start.attrs.get("largest_energy", 0.0))
         self.belief = Belief(system, arrays, self.blocks, self.state.energies, self.initial_energy, met)
@@ -97,16 +97,12 @@ class Run:
         self.surfaces = surfaces
         self.firsts = arrays.firsts if surfaces is None else surfaces.firsts
         self.contact_record = np.empty((at.COLUMNS, len(self.firsts), timing.samples))
-        # Of all modes of a body there are many, and what is heard of them takes no more digits.
-        self.in_single = np.array([one.is_of_body for one in arrays.probes], dtype=bool)
-        of_bodies = int(self.in_single.sum())
-        self.probe_record = np.empty((timing.samples, len(arrays.probes) - of_bodies))
-        self.motion_record = np.empty((timing.samples, of_bodies), dtype=np.float32)
+        of_bodies = np.array([one.is_of_body for one in arrays.probes], dtype=bool)
+        self.probed = ProbeRecords(of_bodies, timing, before)
         self.wanted: Collection[str] = RECORDED
         self.columns: tuple[int, ...] = ALL_COLUMNS
-        self.done = self.filled = 0
+        self.done = 0
         self.ended = at.FINISHED
-        self.tail: Array | None = None
         self.compile_time = self.wall_time = 0.0
 
     def keep_only(self, wanted: Collection[str]) -> None:
@@ -122,9 +118,8 @@ class Run:
 
     @property
     def samples_ahead(self) -> int:
-        """Number of samples beyond the end that the low-pass of the probes needs."""
-        waits = bool(self.probes) and self.filled < self.done and self.ended == at.FINISHED
-        return -(-self.decimator.lookahead // self.timing.ratio) if waits else 0
+        """Number of samples beyond the end that the low-passes of the probes need."""
+        return -(-self.probed.ahead(self.done) // self.timing.ratio) if self.ended == at.FINISHED else 0
 
     def imposed(self, first_sample: int, samples: int) -> Imposed:
         """Return the imposed signals and motions of the steps of some samples."""
@@ -144,28 +139,12 @@ class Run:
             self.contact_record[column, :, kept] = contacts[:, :, column].T
         self.done += completed
         if self.probes:
-            self._keep_probes(chunk.raw[: completed * self.timing.ratio])
+            self.probed.take(chunk.raw[: completed * self.timing.ratio])
 
     def finish(self, state: State, ahead: Chunk | None) -> None:
         """Set the final state, and complete the probes from a chunk beyond it, or from the last value."""
-        self.state, self.tail = state, self.decimator.tail
-        if not self.probes or self.filled >= self.done:
-            return
-        raw = np.empty((0, self.in_single.size)) if ahead is None else ahead.raw[: ahead.completed * self.timing.ratio]
-        missing = self.decimator.lookahead - raw.shape[0]
-        if missing > 0:
-            last = raw[-1:] if raw.shape[0] else self.decimator.last
-            last = np.zeros((1, self.in_single.size)) if last is None else last
-            raw = np.concatenate([raw, np.repeat(last, missing + self.timing.ratio, axis=0)])
-        self._keep_probes(raw)
-
-    def _keep_probes(self, raw: Array) -> None:
-        samples = self.decimator.feed(raw)
-        count = min(samples.shape[0], self.timing.samples - self.filled)
-        here = slice(self.filled, self.filled + count)
-        self.probe_record[here] = samples[:count, ~self.in_single]
-        self.motion_record[here] = samples[:count, self.in_single]
-        self.filled += count
+        self.state = state
+        self.probed.finish(self.done, None if ahead is None else ahead.raw[: ahead.completed * self.timing.ratio])
 
     def why_diverged(self) -> str:
         """Return the contacts when the run diverged, and the rank of their compliance if it matters, in words."""
@@ -188,10 +167,10 @@ class Run:
             self._time(),
             *self._over_time(),
             self.probes,
-            (self.probe_record[:done], self.motion_record[:done]),
+            (*self.probed.values(done), None if timing.motion_every == 1 else self._time(timing.motion_every)),
             self.state,
             np.concatenate([motion_about(self.described, last_step, timing.step), self.offset[None]]),
-            np.empty((0, self.in_single.size)) if self.tail is None else self.tail,
+            self.probed.state,
             self._attributes(interrupted, {"scenario": self._scenario()} if provenance else {}),
             None if surfaces is None else dict(zip(surfaces.shown, surfaces.names, strict=True)),
         )
@@ -213,10 +192,10 @@ class Run:
     def _last_step(self) -> int:
         return self.first_step + self.done * self.timing.ratio
 
-    def _time(self) -> Array:
-        """Return the time at the end of each sample interval [s]."""
+    def _time(self, every: int = 1) -> Array:
+        """Return the time at the end of each interval of `every` samples [s]."""
         first_sample = self.first_step // self.timing.ratio
-        return np.asarray((first_sample + np.arange(1, self.done + 1)) * self.timing.interval)
+        return np.asarray((first_sample + np.arange(every, self.done + 1, every)) * self.timing.interval)
 
     def _over_time(self) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Return the columns of the contacts, their status shares and the energies, up to the end."""
@@ -273,6 +252,8 @@ class Run:
             "step": timing.step,
             "sample_rate": float(f"{1.0 / timing.interval:.12g}"),
         }
+        if timing.motion_every > 1:
+            simulation["motion_rate"] = float(f"{1.0 / (timing.interval * timing.motion_every):.12g}")
         if self.surfaces is not None:
             if self.surfaces.points is None:
                 simulation["surface_rate"] = float(f"{1.0 / (timing.interval * self.surfaces.every):.12g}")

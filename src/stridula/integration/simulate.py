@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -14,7 +14,7 @@ from ..lowering import Assembly, assemble
 from ..lowering.schemes import CentralDifference, ExactModal, Scheme
 from ..lowering.stepping import Stepping
 from ..ordinary import of_ordinary_size
-from ..records import Probe
+from ..records import ModalMotion, Probe
 from ..records.by_surface import groups
 from ..records.probes import usual_probes
 from ..system import System
@@ -49,6 +49,7 @@ def simulate(
     watchers: Sequence[Watcher] = (),
     title: str = "",
     surface_rate: float | str | None = None,
+    motion_rate: float | None = None,
     progress: bool = False,
 ) -> xr.Dataset:
     """Simulate a system in time and return its record.
@@ -85,6 +86,10 @@ def simulate(
         Rate of maps of surfaces [Hz], with no other record of their points; the nearest rate at which an interval is a
         whole number of samples. If left out, maps at 1 kHz, and the variables of points that sound and regimes need,
         for surfaces with known areas. With ``"all"`` every point is a contact of the record.
+    motion_rate : float, optional
+        Rate at which the motion of bodies is recorded, from which `radiate` computes their sound [Hz]; the nearest rate
+        at which an interval is a whole number of samples. The motion of all bodies, unless `probes` have a ModalMotion.
+        If left out, only such probes, at the sample rate.
     progress : bool, optional
         Whether to show a bar on standard error with the simulated time, the speed and the time left, in terminals,
         notebooks and logs.
@@ -113,7 +118,7 @@ def simulate(
     """
     if not isinstance(watchers, Sequence):
         raise ArgumentError("watchers", "be a list of callables", watchers)
-    asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve, surface_rate)
+    asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve, surface_rate, motion_rate)
     with time_shown(progress, title or "simulate") as more:
         run = asked.run(asked.arrays(system), start, title)
         march = March([run.blocks], [run.state], run.timing.step, run.timing.ratio, asked.solve)
@@ -157,10 +162,12 @@ class Asked:
         probes: Sequence[Probe] | None,
         contact_solve: GaussSeidel | None,
         surface_rate: float | str | None = None,
+        motion_rate: float | None = None,
     ) -> None:
         self.duration, self.step, self.sample_rate = positive("duration", duration), step, sample_rate
         self.common_step: float | None = None
         self.surface_rate = checked_rate(surface_rate)
+        self.motion_rate = None if motion_rate is None else positive("motion_rate", motion_rate)
         self.scheme: Scheme = ExactModal() if scheme is None else scheme
         instance("scheme", self.scheme, (CentralDifference, ExactModal))
         if probes is not None and not isinstance(probes, Sequence):
@@ -175,13 +182,20 @@ class Asked:
         probes = usual_probes(system) if self.probes is None else tuple(self.probes)
         for number, probe in enumerate(probes):
             instance(f"probes[{number}]", probe, Probe.__args__)
+        if self.motion_rate is not None and not any(hasattr(probe, "of_each") for probe in probes):
+            probes += tuple(ModalMotion(body) for body in system.bodies)
         return Arrays(system, probes, assemble(system, probes))
 
     def timing(self, arrays: Arrays) -> Timing:
         """Return the step and the sampling of a system."""
-        if self.common_step is not None:
-            return _sampled(self.common_step, round(1.0 / (self.sample_rate * self.common_step)), self.duration)
-        return choose_timing(arrays.flat, self.scheme, self.duration, self.step, self.sample_rate)
+        if self.common_step is None:
+            timing = choose_timing(arrays.flat, self.scheme, self.duration, self.step, self.sample_rate)
+        else:
+            timing = _sampled(self.common_step, round(1.0 / (self.sample_rate * self.common_step)), self.duration)
+        if self.motion_rate is None:
+            return timing
+        every = _intervals("motion_rate", self.motion_rate, timing)
+        return replace(timing, motion_every=every, samples=every * max(1, round(timing.samples / every)))
 
     @of_ordinary_size("system")
     def run(self, arrays: Arrays, start: xr.Dataset | None = None, title: str = "") -> Run:
@@ -206,7 +220,7 @@ class Asked:
             rows = len(groups(system.contact_names, system.surface_names)) + -(-rows // every)
         in_single = sum(one.is_of_body for one in arrays.flat.probes)
         plain = len(arrays.flat.probes) - in_single
-        size = 8 * (plain + ENERGIES + COLUMNS * rows) + 4 * in_single + more
+        size = 8 * (plain + ENERGIES + COLUMNS * rows) + 4 * in_single / timing.motion_every + more
         if size > LARGEST_RECORD / max(timing.samples, 1):
             raise ArgumentError(
                 "duration",
@@ -217,16 +231,23 @@ class Asked:
 
     def _every(self, system: System, timing: Timing) -> int:
         """Return the samples in an interval of maps of surfaces, 0 if all points are contacts of the record."""
-        rate, asked = 1.0 / timing.interval, self.surface_rate
+        asked = self.surface_rate
         if isinstance(asked, str) or (asked is None and not system.faces):
             return 0
         if asked is None:
-            return max(1, round(rate / MAP_RATE))
+            return max(1, round(1.0 / (timing.interval * MAP_RATE)))
         if not (system.surface_names and system.has_two_tangents):
             raise ArgumentError("surface_rate", "be left out without surfaces in contact", asked)
-        if asked > rate * (1.0 + 1e-9):
-            raise ArgumentError("surface_rate", f"be at most the sample rate, {at_most(rate)} Hz", asked)
-        return max(1, round(rate / asked))
+        return _intervals("surface_rate", asked, timing)
+
+
+def _intervals(name: str, asked: float, timing: Timing) -> int:
+    """Return the samples in an interval at a rate that is asked for; ValueError if it is above the sample rate."""
+    # A whole number of steps in a sample may leave a rate a little lower than asked for.
+    rate = (1.0 + 1e-9) / timing.interval
+    if asked > rate:
+        raise ArgumentError(name, f"be at most the sample rate, {at_most(rate)} Hz", asked)
+    return max(1, round(rate / asked))
 
 
 def checked_rate(surface_rate: float | str | None) -> float | str | None:

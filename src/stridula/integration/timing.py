@@ -17,11 +17,14 @@ class Timing:
         Steps per recorded sample.
     samples : int
         Number of samples to record.
+    motion_every : int, optional
+        Samples in an interval at whose end the motion of bodies is recorded.
     """
 
     step: float
     ratio: int
     samples: int
+    motion_every: int = 1
 
     @property
     def interval(self) -> float:

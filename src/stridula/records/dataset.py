@@ -33,6 +33,9 @@ OVER_TIME = {variable.name: variable for variable in (*CONTACT, *ENERGY, STATUS_
 # All variables over time except the probes.
 RECORDED = (*OVER_TIME, STATUS.name, FRICTION_STATE.name)
 
+# Dimension of the motion of bodies where it has times of its own.
+MOTION_TIME = "motion_time"
+
 
 def to_dataset(
     system: System,
@@ -41,7 +44,7 @@ def to_dataset(
     status_share: Array,
     energies: dict[str, Array],
     probes: Sequence[Probe],
-    probe_values: tuple[Array, Array],
+    probe_values: tuple[Array, Array, Array | None],
     state: State,
     motion: Array,
     raw: Array,
@@ -52,9 +55,10 @@ def to_dataset(
 
     Arrays of the contacts have the shapes (contacts, samples), and (samples, contacts, 3) for the status. `motion` is
     the motion imposed on each contact a step before the end and at the end, and its displacement beyond these, shape
-    (3, contacts, 3). `probe_values` are those of probes and those of all modes of bodies. `raw` are the last values of
-    both at every step, which the low-pass still needs, shape (steps, values). `shown` has the names of rows that
-    represent several contacts, by the number of one of these.
+    (3, contacts, 3). `probe_values` are those of probes, those of all modes of bodies, and the times of the latter
+    unless they are those of the samples. `raw` are the last values of both at every step, which the low-passes still
+    need, shape (steps, values). `shown` has the names of rows that represent several contacts, by the number of one of
+    these.
     """
     words = described("s", "time at the end of the sample interval")
     coordinates: dict[str, Any] = {
@@ -71,7 +75,7 @@ def to_dataset(
         coordinates["surface"] = ("contact", [system.surface_names[number] for number in numbers])
     if system.has_two_tangents:
         coordinates["tangent"] = ("tangent", list(TANGENTS))
-    values, motion_values = probe_values
+    values, motion_values, motion_time = probe_values
     plain = [probe for probe in probes if not hasattr(probe, "of_each")]
     for kind, variable in PROBES.items():
         chosen = [k for k, probe in enumerate(plain) if probe.quantity == kind]
@@ -82,7 +86,10 @@ def to_dataset(
     if len(plain) < len(probes):
         kind = ModalMotion.quantity
         coordinates |= _of_modes(system, [probe.body for probe in probes if probe not in plain])
-        data[kind] = (("time", f"{kind}_probe"), motion_values, attributes_of(PROBES[kind]))
+        along = "time" if motion_time is None else MOTION_TIME
+        data[kind] = ((along, f"{kind}_probe"), motion_values, attributes_of(PROBES[kind]))
+        if motion_time is not None:
+            coordinates[along] = (along, motion_time, described("s", "time at the end of an interval of the motion"))
     for name, dimensions, values, meaning in (
         ("state_modal", ("state_kind", "mode"), state.modal, "modal positions and increments at the end"),
         ("state_remainder", ("state_kind", "mode"), state.remainder, "rounding remainders of state_modal"),

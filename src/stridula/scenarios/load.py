@@ -49,6 +49,8 @@ class Scenario:
         Solver of several contacts; the default if None.
     surface_rate : float, str or None
         Recording of surfaces, as for `simulate`: maps per second [Hz], or ``"all"`` points at every sample.
+    motion_rate : float or None
+        Rate at which the motion of bodies is recorded for their sound [Hz]; only probes if None.
     """
 
     title: str
@@ -61,6 +63,7 @@ class Scenario:
     probes: tuple[Probe, ...] | None
     contact_solve: GaussSeidel | None = None
     surface_rate: float | str | None = None
+    motion_rate: float | None = None
 
     def simulate(self, **kwargs: Any) -> xr.Dataset:
         """Simulate the system in time and return its record.
@@ -75,7 +78,8 @@ class Scenario:
         ScenarioError
             If the scenario's step, duration or sample rate is out of its range, or its coupled modes overflow.
         """
-        names = ("duration", "scheme", "step", "sample_rate", "probes", "contact_solve", "title", "surface_rate")
+        rates = ("sample_rate", "surface_rate", "motion_rate")
+        names = ("duration", "scheme", "step", *rates, "probes", "contact_solve", "title")
         own = {name: getattr(self, name) for name in names}
         try:
             return simulate(self.system, **(own | kwargs))
@@ -142,6 +146,7 @@ def scenario_of_tables(written: dict[str, Any], problems: Sequence[str] = ()) ->
         probes=builder.probes(system),
         contact_solve=builder.contact_solve(),
         surface_rate=simulation.surface_rate,
+        motion_rate=simulation.motion_rate,
     )
 
 

@@ -80,6 +80,8 @@ class Simulation(Table):
     """samples recorded per second [Hz]"""
     surface_rate: is_.FrequencyOrAll | None = None
     """maps of surfaces recorded per second, without single points [Hz], or all: each point as a contact"""
+    motion_rate: is_.Frequency | None = None
+    """motion of bodies recorded per second, for their sound, only that of probes modal_motion if left out [Hz]"""
     probes: list[Probe] | None = None
     """additional quantities to record, the acceleration of the track's centre if left out"""
     contact_solve: ContactSolve | None = None

@@ -198,7 +198,13 @@ class Runs:
 
     def _simulate(self, begins: InitialEquilibrium, lasts: float, **words: Any) -> xr.Dataset:
         system = replace(self.scenario.system, drives=(*self.scenario.system.drives, begins))
-        scenario = replace(self.scenario, system=system, sample_rate=self.sample_rate, probes=(), surface_rate="all")
+        recorded: dict[str, Any] = {
+            "sample_rate": self.sample_rate,
+            "probes": (),
+            "surface_rate": "all",
+            "motion_rate": None,
+        }
+        scenario = replace(self.scenario, system=system, **recorded)
         return scenario.simulate(duration=lasts, watchers=[lambda progress: self.watch()], **words)
 
 

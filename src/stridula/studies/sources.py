@@ -28,7 +28,7 @@ SAMPLE_RATE = 20e3
 # Default of `simulate`.
 DEFAULT_RATE = 100e3
 # Arguments of a simulation that a function may return with its system.
-ARGUMENTS = ("duration", "scheme", "step", "sample_rate", "probes", "contact_solve", "surface_rate")
+ARGUMENTS = ("duration", "scheme", "step", "sample_rate", "probes", "contact_solve", "surface_rate", "motion_rate")
 SystemOf = Callable[..., Any]
 
 
@@ -173,6 +173,7 @@ def _made(function: SystemOf, values: Mapping[str, Any], given: Mapping[str, Any
         probes=None if probes is None else tuple(probes),
         contact_solve=words.get("contact_solve"),
         surface_rate=words.get("surface_rate"),
+        motion_rate=words.get("motion_rate"),
     )
 
 

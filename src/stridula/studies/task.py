@@ -93,6 +93,7 @@ class Task:
             "probes": scenario.probes if self.probes else (),
             "contact_solve": scenario.contact_solve,
             "surface_rate": scenario.surface_rate,
+            "motion_rate": _motion_rate(scenario) if self.probes else None,
         }
 
     def _simulate(
@@ -125,6 +126,12 @@ class Task:
             message = outcome["message"] or result["message"]
             values: dict[str, Value] = outcome["values"] | result["values"]
             outcome |= {"ended": result["ended"], "message": message, "values": values}
+
+
+def _motion_rate(scenario: Scenario) -> float | None:
+    """Return the rate of the motion of bodies in a record that may have fewer samples than the scenario's."""
+    rate = scenario.motion_rate
+    return None if rate is None else min(rate, scenario.sample_rate)
 
 
 def _alike(scenarios: dict[int, Scenario], options: Callable[[Scenario], dict[str, Any]]) -> list[list[int]]:
