@@ -114,7 +114,7 @@ def test_the_level_follows_the_sound_and_states_its_full_scale(browsing):
     assert words.text_content() == "muted"
     page.locator("#sound").click()
     # At 0.1 Pa the limiter would take some 30 dB away.
-    until(page, "/^full scale \\d+ Pa$/.test(document.getElementById('scale-out').textContent)")
+    until(page, "/^full scale [\\d.]+ Pa$/.test(document.getElementById('scale-out').textContent)")
     until(page, "stridula.stats.reduction > 0.7 && stridula.stats.peak > 0.1")
     page.locator("#levelled").uncheck()
     until(page, "document.getElementById('scale-out').textContent === 'full scale 0.1 Pa'")

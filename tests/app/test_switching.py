@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
+from functools import cache
 from itertools import permutations
 
 import pytest
@@ -19,9 +21,16 @@ UNBELIEVED = {"energy created", "not finite", "contact unsolved"}
 
 def after(case: str, hundredths: int, repeats: bool = True) -> Instrument:
     """Return an instrument that has played a case for a number of hundredths of a second."""
-    found = Instrument(playable(case, None, {}))
+    found = deepcopy(_after(case, hundredths))
     found.repeats = repeats
+    return found
+
+
+@cache
+def _after(case: str, hundredths: int) -> Instrument:
+    found = Instrument(playable(case, None, {}))
     played(found, hundredths)
+    assert found.stroke == 1
     return found
 
 

@@ -12,7 +12,6 @@ import matplotlib.pyplot as plt
 import pytest
 
 import stridula as st
-from stridula import studies
 
 from .checks import CHECKS, GIVEN, SCENARIOS, WRITTEN, pad
 from .pages import PAGES, ROOT, blocks, commands, few, shorter, smaller, without_examples
@@ -86,8 +85,8 @@ def test_examples_that_code_continues_are_kept():
 @of_pages("python")
 def test_code(page, tmp_path, monkeypatch, capsys):
     """Text after code is its output."""
-    grid = studies.Grid
-    monkeypatch.setattr(studies, "Grid", lambda keys: grid(few(keys)))
+    grid = st.Grid
+    monkeypatch.setattr(st, "Grid", lambda keys: grid(few(keys)))
     names: dict[str, Any] = {}
     printed = [""]
     for language, text in without_examples(blocks(page, "python", "text")):

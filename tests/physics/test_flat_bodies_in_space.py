@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from math import pi
 
@@ -10,7 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import stridula as st
-from stridula.acoustics import sheets
+from stridula.acoustics import responses, sheets
 from stridula.acoustics.dipoles import moved_area
 from stridula.acoustics.panels import line_of, panel_of
 from stridula.acoustics.recorded_motion import VARIABLE
@@ -115,7 +116,7 @@ def test_the_whole_is_the_sum_of_its_bodies(plate):
     for baffled in (None, True):
         whole = st.radiate(run, system, ears, baffled=baffled)
         assert whole.attrs["bodies"] == ["slider", "plate"]
-        assert np.isfinite(whole.attrs["fit_error"]).tolist() == [True, False]
+        assert np.isfinite(whole.attrs["fit_error"]).tolist() == [True, baffled is None]
         known = st.radiate(run, system, ears, bodies=[system.track], baffled=baffled).values
         if baffled is None:
             rest = st.radiate(run, system, ears, bodies=[block]).values
@@ -191,6 +192,35 @@ def test_more_points_change_little():
         wave = 2.0 * pi * frequency * coarse.surface.frequency / AIR.speed
         found, known = (one.heard(one.fit(wave), wave, places) for one in (coarse, fine))
         assert (np.linalg.norm(found - known, axis=0) < most * np.linalg.norm(known, axis=0)).all()
+
+
+def test_the_error_of_a_sheet_is_its_difference_from_many_points():
+    """In the force of the air on each mode, to a factor of two."""
+    fine = SheetDipoles(sheet_of(panel_of(PLATE), 9e3))
+    for frequency in (800.0, 1500.0):
+        sheet = SheetDipoles(sheet_of(panel_of(PLATE), frequency))
+        for wave in 2.0 * pi * np.array([200.0, 800.0]) / AIR.speed:
+            fits = [one.fit(wave) for one in (sheet, fine)]
+            found, known = (one.carried(fit.strengths[0]) for one, fit in zip((sheet, fine), fits, strict=True))
+            true = np.abs(found - known) / np.abs(known)
+            assert (np.abs(np.log2(fits[0].errors / true)) < 1.0).all()
+            assert (fits[1].errors < fits[0].errors).all()
+    bare = replace(fine.surface, coarser=None)
+    assert np.isnan(SheetDipoles(bare).fit(1.0).errors).all()
+
+
+def test_a_sheet_with_few_points_is_doubted(monkeypatch):
+    plate = replace(PLATE, cutoff=801.0)
+    system = pressed(plate)
+    run = st.simulate(system, 1e-3, step=1e-5, sample_rate=2e4, probes=[])
+    words = "plate: error of .* % in the force of the air on it at 787.4 Hz"
+    for most, doubted in ((2400, False), (36, True)):
+        monkeypatch.setattr(sheets, "MOST", most)
+        responses._sheet.cache_clear()
+        heard = st.radiate(run, system, [[0.3, 0.25, 0.5]], bodies=[plate])
+        assert (heard.attrs["fit_error"][0] > 0.05) == doubted
+        assert bool(re.search(words, heard.attrs["notes"])) == doubted
+    responses._sheet.cache_clear()
 
 
 def test_a_blow_on_a_free_plate_sounds_as_its_response_predicts():

@@ -9,7 +9,7 @@ fields at the frequencies at which the inside of that surface resonates.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 import scipy.linalg
@@ -25,6 +25,8 @@ DEPTH_OF_SPACING, DEPTH_OF_BALL, DEEPER = 1.5, 0.6, 1.2
 
 class Radiator(Protocol):
     """A body as its equivalent sources."""
+
+    error_in: ClassVar[str]
 
     @property
     def surface(self) -> Any:
@@ -52,7 +54,7 @@ class Fit(NamedTuple):
     strengths : tuple of ndarray
         Strengths of the sources for each mode, in the form of the radiator.
     errors : ndarray, shape (modes,)
-        Relative errors of the normal motion over the surface.
+        Relative errors: of the normal motion over the surface, or for sheets of the force of the air on the mode.
     """
 
     strengths: tuple[Array, ...]

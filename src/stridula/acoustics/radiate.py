@@ -83,8 +83,9 @@ def radiate(
         ``attrs`` have the bandwidth [Hz], up to which the sound is complete and above which it is cut off, the air, the
         distances [m] to the nearest point of the track, and notes on what is missing. ``motion`` is "recorded", "driven
         again", or both. For a system they have the names of the bodies and, as ``fit_error``, for each the largest
-        relative error of its sources in the normal motion of a mode over the surface, at the mode's own frequency, nan
-        for plates and lines of dipoles; notes state it where it is above 5 %.
+        relative error of its sources at the frequency of a mode: in the mode's normal motion over the surface, or for
+        plates as sheets in the force of the air on the mode; nan for lines of dipoles and flat surfaces in a baffle.
+        Notes state it where it is above 5 %.
 
     Raises
     ------

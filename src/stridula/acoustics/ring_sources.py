@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -39,6 +40,7 @@ class RingSources:
         The surface.
     """
 
+    error_in: ClassVar[str] = "its normal motion"
     surface: RingSurface
 
     @property

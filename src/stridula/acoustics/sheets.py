@@ -12,14 +12,15 @@ part of
 
 Strengths are constant on patches between the Chebyshev points of each side, and the equations hold at the points
 between these: Multhopp's rule for wings (Lan 1974, J. Aircraft 11, 518-527), which includes the decrease of mu to zero
-at edges. The parts ``1 / R³`` and ``k² / 2 R`` of the kernel are integrated in closed form over the patches; the rest
-is smooth. A rectangle is symmetric about both of its middle lines: modes that are even or odd about each need only a
-quarter of the points.
+at edges. A coarser sheet of the same plate tells how much the points matter: the error of a mode is the relative
+difference of the force of the air on it, ``integral of mu shape dS``, between the two. The parts ``1 / R³`` and ``k² /
+2 R`` of the kernel are integrated in closed form over the patches; the rest is smooth. A rectangle is symmetric about
+both of its middle lines: modes that are even or odd about each need only a quarter of the points.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, pi, sqrt
 from typing import ClassVar
@@ -33,6 +34,8 @@ from .panels import Panel
 
 # Points along a side for each wave of sound or of the modes, additional points for the edges, and largest total number.
 POINTS_A_WAVE, FOR_EDGES, MOST = 3.0, 12, 2400
+# Points along a side of the coarser sheet, relative to those of the sheet.
+COARSER = 0.7
 # Images of a point in both middle lines; 1 where it is mirrored.
 IMAGES = ((0, 0), (1, 0), (0, 1), (1, 1))
 
@@ -51,6 +54,8 @@ class Sheet:
         Motion of the modes at the points next to the corner [kg^(-1/2)].
     parities : ndarray of int, shape (modes, 2)
         Signs of the modes at the images of these points along x and along y, 1 or -1.
+    coarser : Sheet or None
+        The same rectangle with fewer points, for errors; nan without it.
     """
 
     form: ClassVar[str] = "sheet"
@@ -60,12 +65,14 @@ class Sheet:
     counts: tuple[int, int]
     shapes: Array
     parities: Array
+    coarser: Sheet | None = None
 
     @property
     def content(self) -> tuple[bytes, ...]:
         """All that fits depend on, for comparison."""
         sides = np.array([self.length, self.width, self.edge, *self.counts])
-        return sides.tobytes(), self.shapes.tobytes(), self.parities.tobytes()
+        own = sides.tobytes(), self.shapes.tobytes(), self.parities.tobytes()
+        return own if self.coarser is None else (*own, *self.coarser.content)
 
     @property
     def frequency(self) -> float:
@@ -83,6 +90,12 @@ def sheet_of(panel: Panel, frequency: float) -> Sheet:
     # In the middle, the distance of points is pi / 2 times its mean.
     wanted = POINTS_A_WAVE * sides * waves / 4.0 + FOR_EDGES
     wanted *= min(1.0, sqrt(MOST / float(wanted.prod())))
+    return replace(_with_points(panel, wanted), coarser=_with_points(panel, COARSER * wanted))
+
+
+def _with_points(panel: Panel, wanted: Array) -> Sheet:
+    """Return a panel as a sheet with at least the wanted numbers of points along its sides."""
+    sides = panel.length, panel.width
     counts = tuple(2 * ceil(0.5 * (float(one) - 1.0)) + 1 for one in wanted)
     x, y = (_points(count, side)[: count // 2] for count, side in zip(counts, sides, strict=True))
     x, y = (part.ravel() for part in np.meshgrid(x, panel.edge + y, indexing="ij"))
@@ -102,6 +115,7 @@ class SheetDipoles:
         The body.
     """
 
+    error_in: ClassVar[str] = "the force of the air on it"
     surface: Sheet
 
     @property
@@ -110,10 +124,28 @@ class SheetDipoles:
         return float(np.hypot(self.surface.length, self.surface.width))
 
     def fit(self, wavenumber: float) -> Fit:
-        """Return the differences of pressure at a quarter of the points, for a wavenumber of the sound [rad/m].
+        """Return the differences of pressure at a quarter of the points, for a wavenumber of the sound [rad/m]."""
+        found = self._differences(wavenumber)
+        errors = np.full(len(self.surface.parities), np.nan)
+        if self._coarser is not None:
+            own, other = (
+                one.carried(strengths)
+                for one, strengths in ((self, found), (self._coarser, self._coarser._differences(wavenumber)))
+            )
+            errors = np.abs(own - other) / np.abs(own)
+        return Fit((found,), errors)
 
-        The equations hold exactly, so errors are nan.
-        """
+    def carried(self, differences: Array) -> Array:
+        """Return the forces of the air on the modes, over its density, for unit modal accelerations, shape (modes,)."""
+        return 4.0 * np.asarray(self._areas @ (differences * self.surface.shapes))
+
+    @cached_property
+    def _coarser(self) -> SheetDipoles | None:
+        coarser = self.surface.coarser
+        return None if coarser is None else SheetDipoles(coarser)
+
+    def _differences(self, wavenumber: float) -> Array:
+        """Return the differences of pressure at a quarter of the points."""
         away, still, bent = self._pairs
         phase = wavenumber * away
         # (1 + i k R) exp(-i k R) less 1 + k² R² / 2, near R = 0 equal to -i k³ R³ / 3.
@@ -126,7 +158,7 @@ class SheetDipoles:
             those = (self.surface.parities == parity).all(axis=1)
             matrix = np.tensordot(_signs(parity[None])[:, 0], parts, 1)
             found[:, those] = np.linalg.solve(matrix, -self.surface.shapes[:, those])
-        return Fit((found,), np.full(len(self.surface.parities), np.nan))
+        return found
 
     def heard(self, fit: Fit, wavenumber: float, places: Array) -> Array:
         """Return the pressures at places (listeners, 3) [m] for unit modal accelerations, shape (listeners, modes)."""

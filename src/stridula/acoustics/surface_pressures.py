@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -73,6 +74,7 @@ class SurfacePressures:
         The surface.
     """
 
+    error_in: ClassVar[str] = "its normal motion"
     surface: PointSurface
 
     @property

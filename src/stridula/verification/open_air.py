@@ -146,7 +146,7 @@ def rigid_plate(length: float, width: float) -> SheetDipoles:
     waves = np.full((1, 2), 1e-9)
     panel = Panel(length, width, 0.0, 1.0, waves, np.ones(1), np.zeros(1), (0.0, length), lambda at: (at, at))
     sheet = sheet_of(panel, 0.0)
-    return SheetDipoles(replace(sheet, shapes=np.ones_like(sheet.shapes)))
+    return SheetDipoles(replace(sheet, shapes=np.ones_like(sheet.shapes), coarser=None))
 
 
 def air_carried(length: float, width: float) -> float:
