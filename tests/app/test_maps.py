@@ -96,6 +96,34 @@ def test_a_map_cancelled_at_its_start_starts_no_process(turns):
     assert psutil.Process().children() == before
 
 
+def test_a_page_that_is_loaded_again_finds_the_process_and_it_ends_after_a_rest(monkeypatch):
+    tables = playable("squeal", None, {}).tables
+
+    async def loaded_again() -> None:
+        beside = Beside()
+        before = set(psutil.Process().children())
+        first = await beside.ask("theory", tables=tables)
+        (process,) = set(psutil.Process().children()) - before
+        monkeypatch.setattr("stridula.app.beside.REST", 0.3)
+        # Two pages that ask nothing, then one that does.
+        beside.close()
+        beside.close()
+        assert await beside.ask("theory", tables=tables) == first
+        await asyncio.sleep(1.0)
+        assert process.is_running()
+        assert set(psutil.Process().children()) - before == {process}
+        beside.close()
+        await asyncio.sleep(1.0)
+        assert not process.is_running()
+        # Another one at once, and at the end of the server none.
+        assert await beside.ask("theory", tables=tables) == first
+        beside.close()
+        await beside.end()
+        assert set(psutil.Process().children()) <= before
+
+    asyncio.run(loaded_again())
+
+
 def test_a_map_without_valid_systems_is_empty(talk):
     talk.scene("squeal")
     rows = rows_of(talk, x={"key": "slider.length", "low": -1.0, "high": -0.5}, y=UP, points=2)

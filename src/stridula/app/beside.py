@@ -10,15 +10,18 @@ from typing import Any
 
 # Greatest length of an answer [bytes].
 LONGEST = 1_000_000
+# Time for which the process is kept once no page is open [s]: a page that is loaded again need not start another.
+REST = 10.0
 
 
 class Beside:
-    """The process that computes maps and linear theory for all pages in turn, while any page is open."""
+    """The process that computes maps and linear theory for all pages in turn, while any page is open or may return."""
 
     def __init__(self) -> None:
         self._process: asyncio.subprocess.Process | None = None
         self._turn = asyncio.Lock()
         self._closed = 0
+        self._rest: asyncio.TimerHandle | None = None
 
     async def ask(self, what: str, **words: Any) -> Any:
         """Return the answer to a question, asked in turn, or None if the last page closes meanwhile.
@@ -37,21 +40,42 @@ class Beside:
         return await asyncio.shield(asyncio.ensure_future(self._answer(line, self._closed)))
 
     def close(self) -> None:
-        """Kill the process."""
+        """Forget all questions, as no page is open: kill a process that computes, one that rests a little later."""
+        self._closed += 1
+        self._stay()
+        if self._turn.locked():
+            self._kill()
+        else:
+            self._rest = asyncio.get_running_loop().call_later(REST, self._kill)
+
+    async def end(self) -> None:
+        """Kill the process and wait for its end."""
+        self._stay()
+        process = self._process
+        self._kill()
+        if process is not None:
+            await process.wait()
+
+    def _stay(self) -> None:
+        if self._rest is not None:
+            self._rest.cancel()
+            self._rest = None
+
+    def _kill(self) -> None:
         if self._process is not None and self._process.returncode is None:
             with contextlib.suppress(ProcessLookupError):
                 self._process.kill()
         self._process = None
-        self._closed += 1
 
     async def _answer(self, line: str, closed: int) -> Any:
         try:
             if closed != self._closed:
                 return None
+            self._stay()
             process = await self._started()
             if closed != self._closed:
                 # The last page closed while the process started.
-                self.close()
+                self._kill()
                 return None
             assert process.stdin is not None
             assert process.stdout is not None

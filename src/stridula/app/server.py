@@ -5,7 +5,8 @@ from __future__ import annotations
 import ipaddress
 import mimetypes
 import re
-from contextlib import suppress
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
 from importlib.resources import files
 
 from starlette.applications import Starlette
@@ -63,6 +64,12 @@ class Pages:
             if not self.open:
                 self.beside.close()
 
+    @asynccontextmanager
+    async def until_the_end(self, app: Starlette) -> AsyncIterator[None]:
+        """Serve, and end the process with the server."""
+        yield
+        await self.beside.end()
+
 
 def create_app(is_open: bool = False) -> ASGIApp:
     """Return the server of the page.
@@ -87,7 +94,7 @@ def create_app(is_open: bool = False) -> ASGIApp:
         return Response(known[name].read_bytes(), 200, HEADERS | policy, kind)
 
     routes = [Route("/", page), WebSocketRoute("/socket", pages.socket), Route("/{name:path}", page)]
-    app = Starlette(routes=routes)
+    app = Starlette(routes=routes, lifespan=pages.until_the_end)
     app.state.pages = pages
     return _named_rightly(app, is_open)
 
