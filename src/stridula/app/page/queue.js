@@ -1,6 +1,6 @@
 // Length of the queued sound: longer while drop-outs continue, shorter again after a time without one.
-const LEAST = 0.16; // [s]
-const MOST = 0.3; // [s]
+const LEAST = 0.3; // [s]
+const MOST = 0.44; // [s]
 const MORE = 0.02; // Increase after a drop-out [s].
 const LESS = 0.005; // Decrease after each calm period [s].
 const CALM = 20000; // [ms]
