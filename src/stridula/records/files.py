@@ -51,7 +51,9 @@ def save(run: xr.Dataset, path: str | Path) -> None:
             raise ArgumentError(
                 "run", "hold only values that NetCDF can store", run, got=f"others: {in_one_line(error)}"
             ) from error
-    write(path, content)
+    # Released here: Python 3.13 and later complain about a file in memory that is collected before its content.
+    with content:
+        write(path, content)
 
 
 def load(path: str | Path) -> xr.Dataset:
