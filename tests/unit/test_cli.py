@@ -472,8 +472,9 @@ def test_the_card_distinguishes_compiling_from_marching():
     record = st.load_scenario("squeal", {"duration": "2 ms"}).simulate()
     record.attrs |= {"wall_time": 0.5, "compile_time": 0.0}
     assert card(record)["computed in"] == "0.5 s, 0.00 x real time"
-    record.attrs["compile_time"] = 14.21
-    assert card(record)["computed in"] == "0.5 s, 0.00 x real time, after 14 s of compiling"
+    for time, words in ((1.234, "1.2 s"), (14.21, "14 s"), (104.2, "104 s")):
+        record.attrs["compile_time"] = time
+        assert card(record)["computed in"] == f"0.5 s, 0.00 x real time, after {words} of compiling"
     del record.attrs["compile_time"]
     assert card(record)["computed in"] == "0.5 s, 0.00 x real time"
 

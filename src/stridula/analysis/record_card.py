@@ -164,7 +164,8 @@ def _computation(record: xr.Dataset) -> dict[str, str]:
     """Return the simulated time, computing time, step and scheme."""
     simulated = record.sizes["time"] * record.attrs["sample_interval"]
     wall_time, compile_time = record.attrs["wall_time"], record.attrs.get("compile_time", 0.0)
-    compiled = f", after {compile_time:.3g} s of compiling" if compile_time else ""
+    seconds = f"{compile_time:.0f}" if compile_time >= 10.0 else f"{compile_time:.2g}"
+    compiled = f", after {seconds} s of compiling" if compile_time else ""
     modes = counted(int(record.attrs["modes"]), "mode")
     return {
         "simulated": f"{simulated:.6g} s{_since(record)}",
