@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 from importlib.resources import files
@@ -22,7 +22,7 @@ from .sheets import Sheet, SheetDipoles
 from .surface_pressures import SurfacePressures
 
 # By the form of the surface.
-RADIATORS: dict[str, type[RingSources | SurfacePressures | SheetDipoles]] = {
+RADIATORS: dict[str, Callable[[Any], Radiator]] = {
     "rings": RingSources,
     "points": SurfacePressures,
     "sheet": SheetDipoles,
@@ -50,9 +50,7 @@ class Fits:
     """
 
     def __init__(self, surface: BodySurface | Sheet) -> None:
-        # Each form of surface belongs to one of them.
-        form: Any = RADIATORS[surface.form]
-        self.radiator: Radiator = form(surface)
+        self.radiator = RADIATORS[surface.form](surface)
         self.name = key([_code(), surface.form.encode(), *surface.content])
         self.known: dict[float, Fit] | None = None
         self.took = 0.0

@@ -36,7 +36,9 @@ class Sent:
     frequencies : ndarray, shape (frequencies,)
         Frequencies of the fits [Hz].
     errors : ndarray, shape (frequencies, modes)
-        Relative errors of the normal motion over the surface.
+        Relative errors of the fits.
+    error_in : str
+        Quantity in which these are errors.
     left : float
         Smallest remainder of the responses in their later half, over their largest values.
     """
@@ -44,6 +46,7 @@ class Sent:
     responses: list[Response]
     frequencies: Array
     errors: Array
+    error_in: str
     left: float
 
 
@@ -96,7 +99,8 @@ def free_responses(
             break
         lasts *= 2.0
     fits.keep()
-    return Sent([one for one, _ in pairs], frequencies, np.array([fit.errors for fit in made]), left)
+    errors = np.array([fit.errors for fit in made])
+    return Sent([one for one, _ in pairs], frequencies, errors, fits.radiator.error_in, left)
 
 
 def _taper(frequencies: Array, whole: float, stop: float) -> Array:

@@ -15,7 +15,6 @@ from ..bodies.body_surfaces import BodySurface
 from .air import Air
 from .delays import Response, Sampling
 from .distances import distances_to
-from .fits import RADIATORS
 from .free_responses import LEFT, Sent, free_responses
 from .sheets import Sheet
 
@@ -133,7 +132,7 @@ def by_fits(
     # A body that does not vibrate moves as a rigid one at any frequency.
     highest = float(frequency.max(initial=0.0)) or np.inf
     sent = free_responses(surface, places, distances, air, sampling, highest)
-    notes, worst = _doubts(name, RADIATORS[surface.form].error_in, frequency, sent)
+    notes, worst = _doubts(name, frequency, sent)
     return Heard(numbers, sent.responses, worst, notes)
 
 
@@ -158,14 +157,14 @@ def _only(surface: BodySurface, numbers: tuple[int, ...]) -> BodySurface:
     return surface if len(numbers) == surface.shapes.shape[1] else surface.only(list(numbers))
 
 
-def _doubts(name: str, error_in: str, frequency: Array, sent: Sent) -> tuple[list[str], float]:
+def _doubts(name: str, frequency: Array, sent: Sent) -> tuple[list[str], float]:
     """Return notes on doubtful responses of a body, and the largest error of a mode at its own frequency."""
     within = np.flatnonzero(frequency <= sent.frequencies[-1])
     own = np.array([np.interp(frequency[k], sent.frequencies, sent.errors[:, k]) for k in within])
     worst, notes = float(own.max(initial=0.0)), []
     if worst > SAID:
         at = frequency[within[int(own.argmax())]]
-        notes.append(f"{name}: error of {100.0 * worst:.2g} % in {error_in} at {at:.4g} Hz")
+        notes.append(f"{name}: error of {100.0 * worst:.2g} % in {sent.error_in} at {at:.4g} Hz")
     if sent.left > LEFT:
         notes.append(f"{name}: {100.0 * sent.left:.2g} % of its response lasts longer than is included")
     return notes, worst

@@ -13,9 +13,9 @@ part of
 Strengths are constant on patches between the Chebyshev points of each side, and the equations hold at the points
 between these: Multhopp's rule for wings (Lan 1974, J. Aircraft 11, 518-527), which includes the decrease of mu to zero
 at edges. A coarser sheet of the same plate tells how much the points matter: the error of a mode is the relative
-difference of the force of the air on it, ``integral of mu shape dS``, between the two. The parts ``1 / R³`` and ``k² /
-2 R`` of the kernel are integrated in closed form over the patches; the rest is smooth. A rectangle is symmetric about
-both of its middle lines: modes that are even or odd about each need only a quarter of the points.
+difference of the force of the air on it, ``integral of mu shape dS``, between the two. The parts ``1 / R³`` and
+``k² / 2 R`` of the kernel are integrated in closed form over the patches; the rest is smooth. A rectangle is symmetric
+about both of its middle lines: modes that are even or odd about each need only a quarter of the points.
 """
 
 from __future__ import annotations

@@ -25,8 +25,6 @@ class Decimator:
 
     Attributes
     ----------
-    tail : ndarray, shape (memory, probes), or None
-        Values at the last steps, from which another decimator can continue.
     last : ndarray, shape (1, probes), or None
         Values at the last step.
     """
@@ -37,19 +35,16 @@ class Decimator:
         self.memory = max(self.reach - ratio, 0)
         self.lookahead = self.reach + 1
         self.taps = taps_of(ratio)
-        self.tail = before
         self.last = None if before is None or not before.size else before[-1:]
         self._pending = before
         self._skip = max(ratio - self.reach, 0)
 
     def feed(self, raw: Array) -> Array:
         """Take values at the next steps and return the completed samples, shape (samples, probes)."""
-        if self.tail is None:
-            self.tail = self._pending = np.repeat(raw[:1], self.memory, axis=0)
+        if self._pending is None:
+            self._pending = np.repeat(raw[:1], self.memory, axis=0)
         if raw.shape[0]:
             self.last = raw[-1:].copy()
-        tail = np.concatenate([self.tail, raw])
-        self.tail = tail[tail.shape[0] - self.memory :]
         raw, self._skip = raw[self._skip :], max(self._skip - raw.shape[0], 0)
         joined = np.concatenate([self._pending, raw])
         count = max(0, (joined.shape[0] - self.taps.size) // self.ratio + 1)

@@ -41,7 +41,7 @@ class ProbeRecords:
         """Record values at the next steps, shape (steps, probes)."""
         if self.tail is None:
             self.tail = np.repeat(raw[:1], self._memory, axis=0)
-        kept = np.concatenate([self.tail, raw])
+        kept = np.concatenate([self.tail, raw[max(0, len(raw) - self._memory) :]])
         self.tail = kept[len(kept) - self._memory :]
         for one in (self._single, self._motion):
             one.take(raw)
