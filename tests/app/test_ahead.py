@@ -33,6 +33,27 @@ def test_parts_are_shown_when_they_are_heard_and_not_if_they_are_replaced(tmp_pa
     ]  # fmt: skip
 
 
+SILENT = """import { Ahead } from "./ahead.js";
+const ahead = new Ahead();
+const take = (at, name, sounds) => ahead.take({ at, end: at + 480, name }, sounds);
+const due = (sample) => ahead.due(sample).map(({ name }) => name);
+result = [];
+for (let k = 0; k < 6; k++) take(480 * k, `old ${k}`, true);
+// A case too slow to sound is computed from 1440 on, while the earlier sound continues to its end.
+ahead.cut(1440);
+result.push(due(2880));
+for (let k = 3; k < 5; k++) {
+  take(480 * k, `new ${k}`, false);
+  result.push(due(ahead.end));
+}
+result.push(ahead.heard, ahead.left);"""
+
+
+def test_without_sound_no_part_is_too_late(tmp_path):
+    heard = [f"old {k}" for k in range(6)]
+    assert result_of(tmp_path, SILENT) == [heard, ["new 3"], ["new 4"], 2400, 0]
+
+
 LEAD = """import { Lead } from "./ahead.js";
 const lead = new Lead();
 result = given.map((spare) => (lead.arrived(spare), lead.length));"""

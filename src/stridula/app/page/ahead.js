@@ -15,8 +15,13 @@ export class Ahead {
     return Math.max(0, this.end - this.heard);
   }
 
-  // Add a part from sample `at` to sample `end`, in place of those that follow `at`.
-  take(part) {
+  // Add a part from sample `at` to sample `end`, in place of those that follow `at`. Without sound it is never too late,
+  // even if the server returned to before what was heard.
+  take(part, sounds = true) {
+    if (!sounds) {
+      this.heard = Math.min(this.heard, part.at);
+      this.shown = Math.min(this.shown, part.at);
+    }
     this.parts = this.parts.filter((one) => one.end <= part.at);
     if (part.end > this.shown) this.parts.push(part);
     this.end = part.end;

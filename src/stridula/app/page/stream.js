@@ -153,7 +153,7 @@ function came(data) {
     const [revision, seconds, , samples] = head;
     const end = Math.round(seconds * RATE);
     const at = end - samples;
-    ahead.take({ at, end, data: data.slice(...span), heard });
+    ahead.take({ at, end, data: data.slice(...span), heard }, sounds());
     if (!sounds()) continue;
     const sound = values.slice(0, samples).map((value) => heard.scale * value);
     player.postMessage({ sound, revision, at, begins }, [sound.buffer]);
