@@ -8,8 +8,9 @@ import pytest
 from stridula.app.instrument import RATE, Instrument
 from stridula.app.parts import Part
 from stridula.app.playable import playable
+from stridula.app.session import ANEW
 
-from .conversation import conversation
+from .conversation import Conversation, conversation, parts_of
 
 PART = 480
 FRICTION = "contact.friction.coefficient"
@@ -18,22 +19,32 @@ SOURCES = [("squeal", "pressure"), ("squeal", "acceleration"), ("judder", "frict
 
 
 def played(instrument: Instrument, parts: int) -> np.ndarray:
-    """Play parts of 10 ms and return their sound, shape (parts, samples)."""
+    """Play parts of 10 ms and return their sound, shape (samples,)."""
     found = [one for _ in range(parts) for one in instrument.play(PART)]
-    return np.array([one.sound for one in found if isinstance(one, Part)])
+    return np.concatenate([one.sound for one in found if isinstance(one, Part)])
 
 
 @pytest.mark.parametrize(("case", "source"), SOURCES)
-def test_a_change_takes_place_where_the_page_wants_it(case, source):
-    """The sound is, to the last bit, that of an instrument that has not played any further."""
-    same = playable(case, None, {})
+@pytest.mark.parametrize("more", [0, 99, 476])
+def test_a_change_takes_place_where_the_page_wants_it(case, source, more):
+    """The sound is, to the last bit, that of an instrument that has not played any further.
+
+    Pressures round otherwise if they are computed from parts of other lengths.
+    """
+    same, end = playable(case, None, {}), -(-(6 * PART + more) // 4) * 4
     ahead, other = (Instrument(same, source) for _ in range(2))
     assert ahead.name == source
-    np.testing.assert_array_equal(played(ahead, 12)[:7], played(other, 7))
-    ahead.change(same, 1, kept=6 * PART + 1)
+    before = played(ahead, 12)
+    assert np.array_equal(before[: 6 * PART], played(other, 6))
+    assert all(len(one.sound) == end - 6 * PART for one in other.play(end - 6 * PART))
+    ahead.change(same, 1, kept=6 * PART + more)
     other.change(same, 1)
-    assert ahead.played_samples == 7 * PART
-    np.testing.assert_array_equal(played(ahead, 6), played(other, 6))
+    assert (ahead.played_samples, ahead.given_samples) == (end, 6 * PART)
+    # The part in which the change takes place is given again up to there.
+    again = played(ahead, 6)
+    np.testing.assert_allclose(again[: end - 6 * PART], before[6 * PART : end], 0.0, 1e-14 * np.abs(before).max())
+    np.testing.assert_array_equal(again[end - 6 * PART :], played(other, 6))
+    assert ahead.given_samples == ahead.played_samples
 
 
 def test_sound_that_must_stay_stays():
@@ -57,8 +68,9 @@ def test_a_refused_change_leaves_the_instrument_where_it_was(monkeypatch):
 
     monkeypatch.setattr(instrument.live, "change", refused)
     with pytest.raises(ValueError, match="refused"):
-        instrument.change(playable("squeal", None, {FRICTION: 0.5}), 1, PART)
+        instrument.change(playable("squeal", None, {FRICTION: 0.5}), 1, PART + 100)
     np.testing.assert_array_equal(played(instrument, 3), played(other, 3))
+    assert clocks(instrument) == [PART * k for k in range(1, 12)]
 
 
 def test_a_stroke_and_a_source_begin_where_the_page_wants_them():
@@ -68,21 +80,42 @@ def test_a_stroke_and_a_source_begin_where_the_page_wants_them():
     assert (instrument.played_samples, instrument.stroke) == (3 * PART, 2)
     again = played(instrument, 5)
     # After the transition of some milliseconds.
-    np.testing.assert_allclose(again[3:], first[3:5], rtol=0.0, atol=1e-3 * np.abs(first).max())
+    late = slice(3 * PART, 5 * PART)
+    np.testing.assert_allclose(again[late], first[late], rtol=0.0, atol=1e-3 * np.abs(first).max())
     instrument.listen_to("force", 5 * PART)
     assert instrument.played_samples == 5 * PART
+
+
+def clocks(instrument: Instrument) -> list[int]:
+    """Return the samples played at the end of each part that is kept."""
+    parts = instrument.last_seconds._parts
+    assert instrument.last_seconds._samples == sum(len(part.sound) for part in parts)
+    return [round(part.clock * RATE) for part in parts]
 
 
 def test_a_record_has_each_moment_once():
     instrument = Instrument(playable("squeal", None, {}))
     played(instrument, 10)
-    instrument.change(playable("squeal", None, {FRICTION: 0.5}), 1, 4 * PART)
+    instrument.change(playable("squeal", None, {FRICTION: 0.5}), 1, 4 * PART + 80)
     played(instrument, 3)
-    kept = instrument.last_seconds
-    clocks = [round(part.clock * RATE) for part in kept._parts]
-    assert clocks == [PART * k for k in range(1, 8)]
-    assert kept._samples == 7 * PART
-    assert [clock for clock, _ in kept._changes] == [0.0, 4 * PART / RATE]
+    assert clocks(instrument) == [*(PART * k for k in range(1, 5)), *(PART * k + 80 for k in range(4, 8))]
+    assert [clock for clock, _ in instrument.last_seconds._changes] == [0.0, (4 * PART + 80) / RATE]
+
+
+def test_losses_continue_from_where_the_instrument_returned_to():
+    """Nothing that was played after the moment counts, as if it had never been played."""
+    ahead, other = (Instrument(playable("squeal", None, {})) for _ in range(2))
+    played(ahead, 10)
+    played(other, 4)
+    ahead.listen_to("force", 4 * PART)
+    other.listen_to("force")
+    for _ in range(2):
+        played(ahead, 3)
+        played(other, 3)
+        losses = [np.concatenate([one.losses for one in each.last_seconds._parts], axis=1) for each in (ahead, other)]
+        np.testing.assert_array_equal(*losses)
+        for each in (ahead, other):
+            each.change(playable("squeal", None, {FRICTION: 0.5}), 1)
 
 
 def test_the_page_is_told_from_where_on_its_sound_changes(own):
@@ -91,12 +124,25 @@ def test_the_page_is_told_from_where_on_its_sound_changes(own):
         page.play(10 * PART)
         page.say("scene", revision=7, case="squeal", overrides={FRICTION: 0.5}, kept=4 * PART)
         told = page.until("anew", "scene")
-        assert told["type"] == "anew"
-        assert 4 * PART <= told["samples"] < 10 * PART
+        assert told == {"type": "anew", "samples": 4 * PART}
         assert page.until("scene")["revision"] == 7
-        (part,) = page.play(PART).parts
-        assert round(part.clock * RATE) == told["samples"] + PART
+        # After the time that the server needs to read it.
+        assert given_again(page, 4 * PART) < PART
+        # In a later part, which comes again up to the change.
         for message in ({"type": "restart"}, {"type": "listen", "source": "force"}):
-            page.asks(message.pop("type"), "anew", kept=told["samples"], **message)
-            (part,) = page.play(PART).parts
-            assert round(part.clock * RATE) == told["samples"] + PART
+            end = round(page.play(PART).parts[-1].clock * RATE)
+            told = page.asks(message.pop("type"), "anew", kept=end - 80, **message)
+            assert told["samples"] == end - PART
+            assert given_again(page, end - PART) == PART - 80
+
+
+def given_again(page: Conversation, begin: int) -> int:
+    """Check that parts come without a request, and return the number of samples given again before the change."""
+    messages = [parts_of(page.bytes()) for _ in ANEW]
+    lengths = [len(part.sound) for parts in messages for part in parts]
+    again = lengths[0] if len(messages[0]) > ANEW[0] else 0
+    assert lengths[bool(again) :] == [PART] * sum(ANEW)
+    assert [len(parts) for parts in messages] == [ANEW[0] + bool(again), *ANEW[1:]]
+    ends = [round(part.clock * RATE) for parts in messages for part in parts]
+    assert ends == (begin + np.cumsum(lengths)).tolist()
+    return again

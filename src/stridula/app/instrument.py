@@ -17,7 +17,7 @@ from ..integration.live import LiveChunk, LiveMarch
 from ..integration.live import Moment as MarchMoment
 from .drawing import drawing_of
 from .last_seconds import LastSeconds
-from .parts import Part, Stop
+from .parts import THINNED, Part, Stop
 from .playable import Playable
 from .sources import Heard, Source, source_of
 
@@ -46,6 +46,11 @@ class _Moment:
     source: Heard
     march: MarchMoment
 
+    @property
+    def samples(self) -> int:
+        """Samples played until then."""
+        return int(self.attributes["played_samples"])
+
 
 class Instrument:
     """A contact that is played.
@@ -72,9 +77,16 @@ class Instrument:
         self._since_repeat = round(TRUST * RATE)
         self._must_blend = False
         self.last_seconds = LastSeconds(RATE, played)
-        self.last_seconds.changed(0.0, played.toml)
+        self.last_seconds.changed(0.0, played)
         self._moments: deque[_Moment] = deque(maxlen=PARTS_KEPT)
+        # The part before a change that was played again, up to its place.
+        self._again: list[Part | Stop] = []
         self._forget()
+
+    @property
+    def given_samples(self) -> int:
+        """Played samples without those that the next call of `play` gives again."""
+        return self.played_samples - sum(one.samples for one in self._again)
 
     def is_of(self, played: Playable) -> bool:
         """Whether a scenario is of the case or text that is played."""
@@ -92,15 +104,16 @@ class Instrument:
         revision : int
             Number of the change.
         kept : int, optional
-            Played samples that must stay; the change takes place as soon after them as the parts played since allow,
-            which are forgotten. After all of them if left out.
+            Played samples that must stay; the change takes place after them, and later ones are forgotten. The part
+            that contains the last of them is given again up to the change. After all samples if left out.
         """
-        now = self._now
+        now, again, last_seconds = self._now, self._again, self.last_seconds.copy()
         self._go_back(kept)
         try:
             goes_on = self._change(played, revision)
         except (ValueError, MemoryError):
             self._return_to(now)
+            self._again, self.last_seconds = again, last_seconds
             raise
         self._forget()
         return goes_on
@@ -139,7 +152,7 @@ class Instrument:
         self._last *= played.sources[name].full_scale / self.heard_as.full_scale
         self.played, self.revision, self.name, self.source = played, revision, name, source
         self.last_seconds.goes_on_as(played)
-        self.last_seconds.changed(self.played_samples / RATE, played.toml)
+        self.last_seconds.changed(self.played_samples / RATE, played)
         self._must_blend, self._still = True, 0
         self._since_repeat = round(TRUST * RATE)
 
@@ -148,11 +161,16 @@ class Instrument:
         return _Moment({name: getattr(self, name) for name in PLAYING}, self.source.copy(), self.live.moment)
 
     def _go_back(self, kept: int | None) -> None:
-        """Return to the first known moment with at least so many played samples, if it is not the present one."""
-        known = ((moment, moment.attributes["played_samples"]) for moment in self._moments)
-        moment, samples = next((one for one in known if kept is not None and one[1] >= kept), (None, 0))
-        if moment is not None and samples < self.played_samples:
-            self._return_to(moment)
+        """Return to so many played samples, or to the first known moment: to the last one before, and on from there."""
+        if kept is None or kept >= self.played_samples:
+            return
+        first, *others = self._moments
+        moment = next((one for one in reversed(others) if one.samples <= kept), first)
+        if moment.samples >= self.played_samples:
+            return
+        self._return_to(moment)
+        missing = -(-(kept - self.played_samples) // THINNED) * THINNED
+        self._again = list(self._played(max(0, missing)))
 
     def _return_to(self, moment: _Moment) -> None:
         vars(self).update(moment.attributes)
@@ -246,6 +264,11 @@ class Instrument:
 
     def play(self, samples: int) -> Iterator[Part | Stop]:
         """Yield the next parts and the ends of strokes; nothing after a stroke that is not repeated."""
+        again, self._again = self._again, []
+        yield from again
+        yield from self._played(samples)
+
+    def _played(self, samples: int) -> Iterator[Part | Stop]:
         while samples and not self.ended:
             chunk, ended = self.live.advance(samples)
             if len(chunk.time):

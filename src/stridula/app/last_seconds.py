@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 from collections import deque
+from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
@@ -53,8 +54,9 @@ class _Kept:
     contacts: dict[str, Array]
     status_shares: Array
     probes: Array
-    # Energy lost in each sample.
+    # Energy lost in each sample, and until the end since the march began or was changed.
     losses: Array
+    lost: Array
 
 
 class LastSeconds:
@@ -72,9 +74,13 @@ class LastSeconds:
         self.rate, self.played = rate, played
         self._parts: deque[_Kept] = deque()
         self._samples = 0
-        self._changes: deque[tuple[float, str]] = deque()
-        # Energies lost since the last change.
-        self._lost = np.zeros(len(LOSSES))
+        self._changes: deque[tuple[float, Playable]] = deque()
+
+    def copy(self) -> LastSeconds:
+        """Return the same seconds, to which later parts are not added."""
+        other = copy(self)
+        other._parts, other._changes = copy(self._parts), copy(self._changes)
+        return other
 
     def goes_on_as(self, played: Playable) -> None:
         """Change the scenario; if its contacts or probes differ, discard everything kept so far."""
@@ -99,13 +105,11 @@ class LastSeconds:
         recorded = chunk.contacts | chunk.along_tangents
         small = {variable.name: recorded[variable.name].astype("f4") for variable in (*CONTACT, STATUS)}
         shares, probes = chunk.status_shares.astype("f4"), chunk.probes.astype("f4")
-        if self._parts and self._parts[-1].stroke != part.stroke:
-            self._lost = np.zeros(len(LOSSES))
         damping, rubbed, convected, contact = (chunk.energies[name] for name in MARCHED)
         lost = np.stack([damping, rubbed, convected - rubbed - contact])
-        losses = np.diff(lost, prepend=self._lost[:, None])
-        self._lost = lost[:, -1].copy()
-        kept = _Kept(source, part.clock, part.stroke, part.sound.astype("f4"), small, shares, probes, losses)
+        losses = np.diff(lost, prepend=self._lost_before(part, begins)[:, None])
+        sound = part.sound.astype("f4")
+        kept = _Kept(source, part.clock, part.stroke, sound, small, shares, probes, losses, lost[:, -1].copy())
         self._parts.append(kept)
         self._samples += len(kept.sound)
         while self._samples - len(self._parts[0].sound) >= self.seconds * self.rate:
@@ -113,12 +117,18 @@ class LastSeconds:
         while len(self._changes) > 1 and self._changes[1][0] < self._parts[0].clock:
             self._changes.popleft()
 
-    def changed(self, clock: float, toml: str) -> None:
+    def _lost_before(self, part: Part, begins: float) -> Array:
+        """Return the energies lost before a part since the march began or was changed."""
+        is_changed = self._changes[-1][0] > begins - 0.5 / self.rate
+        if is_changed or not self._parts or self._parts[-1].stroke != part.stroke:
+            return np.zeros(len(LOSSES))
+        return self._parts[-1].lost
+
+    def changed(self, clock: float, played: Playable) -> None:
         """Keep the scenario played from a time on, in place of an earlier one for the same time."""
-        self._lost = np.zeros(len(LOSSES))
-        if self._changes and self._changes[-1][0] == clock:
+        while self._changes and self._changes[-1][0] >= clock:
             self._changes.pop()
-        self._changes.append((clock, toml))
+        self._changes.append((clock, played))
 
     def record(self, played: Playable, steps: int) -> bytes:
         """Return a record of the last seconds, as NetCDF.
@@ -174,7 +184,7 @@ class LastSeconds:
             "source": f"stridula {__version__}",
             "stridula_version": __version__,
             "scenario": played.toml,
-            "changes": json.dumps([{"time": clock, "scenario": toml} for clock, toml in self._changes]),
+            "changes": json.dumps([{"time": clock, "scenario": one.toml} for clock, one in self._changes]),
             "scheme": played.scenario.scheme.name,
             "steps_per_sample": steps,
             "sample_interval": 1.0 / self.rate,

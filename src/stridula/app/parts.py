@@ -66,6 +66,11 @@ class Part:
     shapes: Shapes
     stroke: int
 
+    @property
+    def samples(self) -> int:
+        """Number of its samples."""
+        return len(self.sound)
+
 
 @dataclass(frozen=True)
 class Stop:
@@ -77,10 +82,13 @@ class Stop:
         Reason for the end.
     goes_on : bool
         Whether another stroke begins.
+    samples : int
+        Zero.
     """
 
     why: str
     goes_on: bool
+    samples: int = field(default=0, init=False)
 
 
 def packed(part: Part) -> bytes:

@@ -36,6 +36,8 @@ AHEAD, FASTEST = 1.0, 1.5
 # Parts after which other pages have their turn; parts that take long are cut so that turns come this often [s], and
 # the longest time of parts played at once [s].
 PARTS_AT_ONCE, TURN, LONGEST = 4, 0.02, 0.25
+# Parts of each message in which sound computed anew is sent at once, so that the first comes early, and their samples.
+ANEW, PART = (1, 1, 2, 2), 480
 # Speed from which sound that is not heard yet is computed anew after a change; slower systems need it.
 REPLAYED = 2.0
 # Time without changes before linear theory is computed [s].
@@ -129,9 +131,9 @@ class Session:
 
     async def _listen(self, message: Listen) -> None:
         if self.instrument is not None:
-            before = self.instrument.played_samples
+            before = self.instrument.given_samples
             self.instrument.listen_to(message.source, self._kept(message))
-            await self._anew(before)
+            await self._send_anew(await self._anew(before))
         self.source = message.source
 
     async def _repeat(self, message: Repeat) -> None:
@@ -150,10 +152,12 @@ class Session:
                 raise ScenarioError(found.problems)
             other = await self._prepared(played)
             async with self._changing:
-                goes_on = await self._play(played, scene.revision, other, self._kept(scene, clock.monotonic() - came))
+                kept = self._kept(scene, clock.monotonic() - came)
+                goes_on, is_anew = await self._play(played, scene.revision, other, kept)
                 self.scene = found.scene
                 # Before the first part of it.
                 await self._tell_scene(scene.revision, goes_on, refused)
+                await self._send_anew(is_anew)
         except MemoryError:
             problems = ["scenario must fit into memory"]
         except ValueError as error:
@@ -187,20 +191,31 @@ class Session:
             return None
         return message.kept + round(since * RATE)
 
-    async def _anew(self, before: int) -> None:
-        """Tell the page from where on the sound is computed anew, if not from where it was."""
+    async def _anew(self, before: int) -> bool:
+        """Tell the page from where on the sound is computed anew, if not from where it was; return whether it is."""
         assert self.instrument is not None
-        undone = before - self.instrument.played_samples
-        if undone:
-            # These samples do not count as requested.
-            self._played -= undone
-            await self._tell("anew", samples=self.instrument.played_samples)
+        undone = before - self.instrument.given_samples
+        if not undone:
+            return False
+        # These samples do not count as requested.
+        self._played -= undone
+        await self._tell("anew", samples=self.instrument.given_samples)
+        return True
+
+    async def _send_anew(self, is_anew: bool) -> None:
+        """Send the first sound that is computed anew, without a request, since the way of one takes time."""
+        if not is_anew:
+            return
+        assert self.instrument is not None
+        for parts in ANEW:
+            self._played += parts * PART
+            await self._play_parts(self.instrument, Pull(type="pull", parts=parts, samples=PART))
 
     async def _play(
         self, played: Playable, revision: int, other: tuple[Instrument, float | None] | None, kept: int | None
-    ) -> bool:
-        """Play a scenario, or another one that is prepared, and return whether the motion continues."""
-        before = 0 if self.instrument is None else self.instrument.played_samples
+    ) -> tuple[bool, bool]:
+        """Play a scenario, or another one that is prepared; return whether the motion continues, and its sound anew."""
+        before = 0 if self.instrument is None else self.instrument.given_samples
         if other is None:
             assert self.instrument is not None
             is_quick = self.instrument.played.is_fast and played.system.bodies == self.instrument.played.system.bodies
@@ -214,8 +229,7 @@ class Session:
                 self.instrument.begin_as(begun, revision, kept)
         if not goes_on:
             self.speed, self._taken, self._made = speed, 0.0, 0
-        await self._anew(before)
-        return goes_on
+        return goes_on, await self._anew(before)
 
     async def _tell_scene(self, revision: int, goes_on: bool, refused: dict[str, list[str]]) -> None:
         assert self.instrument is not None
@@ -309,9 +323,9 @@ class Session:
         await _sent(self.socket.send_bytes(content))
 
     async def _restart(self, instrument: Instrument, message: Restart) -> None:
-        before = instrument.played_samples
+        before = instrument.given_samples
         instrument.restart(self._kept(message))
-        await self._anew(before)
+        await self._send_anew(await self._anew(before))
 
     async def _no_map(self, instrument: Instrument, message: NoMap) -> None:
         self._stop("map")

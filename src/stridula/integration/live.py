@@ -175,7 +175,7 @@ class LiveMarch:
     def return_to(self, moment: Moment) -> None:
         """Return to an earlier moment; the march continues from it to the last bit as it did then."""
         vars(self).update(_apart(moment.attributes))
-        self._march = March([self._blocks], [moment.state], self.step, self.ratio)
+        self._march.put([moment.state])
 
     def restart(self) -> None:
         """Return to the start."""

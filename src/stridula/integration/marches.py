@@ -247,6 +247,15 @@ class March:
             found.append(State(modal, rows - modal / scale, carried, energies[:, run].copy()))
         return found
 
+    def put(self, states: Sequence[State]) -> None:
+        """Continue from other states of the same systems."""
+        where = self.layout
+        states = [*states, *[states[-1]] * (self.runs - self.given)]
+        for run, (state, scale) in enumerate(zip(states, self.scales, strict=True)):
+            self.modes.rows[where.block, :2, where.lane + run] = (state.modal / scale + state.remainder).T
+        for name, own in (("carried", self.carried.carried), ("energies", self.carried.energies)):
+            own.reshape(-1, self.runs)[:] = np.stack([getattr(state, name).reshape(-1) for state in states], axis=1)
+
     def copy(self) -> March:
         """Return a copy in the same state."""
         return deepcopy(self)

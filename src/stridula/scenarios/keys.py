@@ -65,6 +65,9 @@ def with_values(tables: dict[str, Any], values: Iterable[tuple[Path, Any]]) -> d
 def find(key: str, tables: dict[str, Any], is_table: bool = False) -> Path:
     """Return the path of a key; the key of a table refers to its only number unless `is_table`."""
     asked = tuple(part.strip() for part in str(key).split("."))
+    if asked[0] not in outline.SHARED and outline.look_up(tables, asked) is not None and outline.node_at(asked, tables):
+        # A full path to a present value needs no search among all keys.
+        return asked if is_table else _only_number(key, asked, tables)
     known = dict(outline.paths(tables))
     if "bodies" in tables and not outline.beams(tables):
         # Values shared by beams have no meaning without beams.

@@ -42,12 +42,36 @@ export class Ahead {
   }
 }
 
-const SHORTEST = 0.01; // [s]
-const LONGEST = 0.25;
-const SPARE = 0.01; // Time to spare when a change arrives [s].
-const LESS = 0.2; // Share by which a longer time to spare is reduced at each change.
+const REPORTS = 16;
 
-// Time from the sound that is heard to the first sound of a change: as short as the way of the change allows.
+// The sample that is heard at any time, from reports that arrive late by different times.
+export class Ear {
+  constructor(rate) {
+    this.perMillisecond = rate / 1000;
+    this.begin();
+  }
+
+  begin() {
+    this.starts = [];
+  }
+
+  // A sample is heard at a time, or was heard somewhat earlier [ms].
+  hears(sample, now) {
+    this.starts = [...this.starts.slice(1 - REPORTS), sample - this.perMillisecond * now];
+  }
+
+  // The latest sample that may be heard at a time [ms], -Infinity without reports.
+  at(now) {
+    return Math.max(...this.starts) + this.perMillisecond * now;
+  }
+}
+
+const SHORTEST = 0.005; // [s]
+const LONGEST = 0.25;
+const MOST = 0.004; // Largest increase at once [s], since a change that arrives late is heard at once all the same.
+const LESS = 0.1; // Share of the time to spare by which the next lead is shorter.
+
+// Time from the sound that is heard to the first sound of a change: so short that few changes arrive late.
 export class Lead {
   constructor() {
     this.length = 0.03;
@@ -55,7 +79,7 @@ export class Lead {
 
   // A change arrived a time before the sound that it replaces, or after it if negative.
   arrived(spare) {
-    const missing = SPARE - spare;
-    this.length = Math.min(LONGEST, Math.max(SHORTEST, this.length + (missing > 0 ? missing : LESS * missing)));
+    const more = spare < 0 ? Math.min(MOST, -spare) : -LESS * spare;
+    this.length = Math.min(LONGEST, Math.max(SHORTEST, this.length + more));
   }
 }

@@ -93,17 +93,17 @@ export class Voice {
   take({ sound, revision, at, begins }) {
     if (begins || this.end === null || at > this.end) this.end = this.fresh = at;
     const spare = at - this.heard;
-    if (spare < 0 || (at < this.end && revision !== this.newest)) this.spare = spare;
+    if (at < this.end && revision !== this.newest) this.spare = spare;
     const late = Math.min(sound.length, Math.max(0, -spare));
     const first = this.written - (this.end - at) + late;
     this.marks = this.marks.filter((mark) => mark.at < first);
     this.marks.push({ revision, at: first });
-    for (let i = late; i < sound.length; i++) this.queue[(first + i - late) & this.mask] = sound[i];
     this.isLate ||= late > 0;
     if (this.isLate && late < sound.length) {
-      this.join(sound[late]);
+      this.join(sound[late], this.next);
       this.isLate = false;
     }
+    for (let i = late; i < sound.length; i++) this.queue[(first + i - late) & this.mask] = sound[i];
     this.newest = revision;
     this.fresh = Math.max(this.heard, at + sound.length);
     this.written += Math.max(0, this.fresh - this.end);
@@ -116,9 +116,15 @@ export class Voice {
     return this.end - (this.written - this.read);
   }
 
-  // Continue with a value without a step.
-  join(value) {
-    this.jump = (this.last ?? value) - value;
+  // The value heard next if nothing comes.
+  get next() {
+    const goesOn = this.read < this.written && this.heard !== this.fresh;
+    return goesOn ? this.queue[this.read & this.mask] + this.jump : this.last;
+  }
+
+  // Continue with a value, without a step from the last one or from another.
+  join(value, from = this.last) {
+    this.jump = (from ?? value) - value;
   }
 
   // Fill a block with the next samples.

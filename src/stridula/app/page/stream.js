@@ -1,12 +1,11 @@
 // The thread that communicates with the server: it requests the next parts in time and passes sound to the player and
 // pictures to the page, so that neither waits for the other.
-import { Ahead, Lead } from "./ahead.js";
+import { Ahead, Ear, Lead } from "./ahead.js";
 import { parts } from "./parts.js";
 import { Queue } from "./queue.js";
 
 const PART = 480; // Samples of a part while live.
 const [FEWEST, MOST] = [2, 6]; // Parts per request: not many, since a change waits for them.
-const FIRST = 4; // Parts requested first after a change, which must last until the next ones come.
 const RATE = 48000;
 const RETRY = 1000; // Time between attempts to reconnect [ms],
 const ROOM = 5000; // and to a full server.
@@ -24,7 +23,7 @@ let pace = { mode: "live", slow: 1, own: false };
 let asked = 0; // Samples requested but not received.
 const ahead = new Ahead();
 const lead = new Lead();
-let isAnew = false; // Whether the next request is the first after a change.
+const ear = new Ear(RATE);
 let begins = true; // Whether the next part is the first of a connection.
 let heard = { scale: 1 }; // The present source, with its factor for the player,
 let next = null; // and the source of later requests.
@@ -43,9 +42,13 @@ self.onmessage = ({ data }) => {
   } else if (data.player) {
     player = data.player;
     ahead.begin(ahead.end);
+    ear.begin();
     player.onmessage = ({ data: told }) => {
       if (told.spare !== undefined) lead.arrived(told.spare / RATE);
-      if (told.heard !== undefined) show(told.heard);
+      if (told.heard !== undefined) {
+        ear.hears(told.heard, performance.now());
+        show(told.heard);
+      }
       feed();
     };
   } else if (data.mute) {
@@ -100,7 +103,9 @@ function say(message) {
 
 // Number of samples that a change keeps: the server computes the others anew. None without sound.
 function kept() {
-  return sounds() ? Math.round(ahead.heard + Math.max(lead.length, queue.extra) * RATE) : null;
+  if (!sounds()) return null;
+  const heard = Math.max(ahead.heard, ear.at(performance.now()));
+  return Math.round(heard + Math.max(lead.length, queue.extra) * RATE);
 }
 
 function sounds() {
@@ -123,8 +128,8 @@ function told(message) {
   }
   if (message.type === "anew") {
     ahead.cut(message.samples);
-    isAnew = true;
-    feed();
+    // The server sends the first parts at once.
+    asked = Infinity;
     return;
   }
   // A message refused as a whole may be the scene in question.
@@ -186,8 +191,7 @@ function feed() {
     const left = player ? ahead.left : due;
     const missing = queue.length * RATE - left;
     if (missing >= FEWEST * PART) {
-      const count = isAnew ? FIRST : Math.min(MOST, Math.floor(missing / PART));
-      isAnew = false;
+      const count = Math.min(MOST, Math.floor(missing / PART));
       if (!player) due += count * PART;
       pull(count, PART);
     }
