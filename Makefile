@@ -6,6 +6,8 @@ else
 PYTHON ?= python3
 PROGRAMS := bin
 endif
+# Hundreds of processes import the package: none of them compiles it again, whatever the surroundings say.
+unexport PYTHONDONTWRITEBYTECODE
 BIN := .venv/$(PROGRAMS)
 OLDEST := .venv-oldest/$(PROGRAMS)
 # A part of the tests that goes through the package and takes neither a browser nor what Debian has.

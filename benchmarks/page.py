@@ -8,7 +8,8 @@
 
 It needs Debian's chromium and playwright. Chromium plays to a sink at the pace of a sound card. Time from slider to
 ear: from the key that moves the friction slider to the moment when the first sample computed with it leaves the queue
-of the player, plus the look-ahead of the limiter and the output latency that the browser reports.
+of the player, plus the look-ahead of the limiter and the output latency that the browser reports; likewise for another
+case, which is prepared first.
 """
 
 from __future__ import annotations
@@ -92,11 +93,11 @@ def busy(wanted: bool) -> Iterator[None]:
 
 
 def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
-    """Use the page for some minutes, changing the friction every 1.5 s; return the measurements."""
+    """Use the page for some minutes, changing the friction every 1.5 s and at times the case; return measurements."""
     from playwright.sync_api import sync_playwright
 
     server, address = served()
-    seen: dict[str, list[float]] = {"fps": [], "dropouts": [], "memory": []}
+    seen: dict[str, list[float]] = {"fps": [], "dropouts": [], "memory": [], "case": []}
     try:
         with sync_playwright() as play:
             browser = play.chromium.launch(executable_path=CHROMIUM, args=list(ARGUMENTS))
@@ -120,7 +121,10 @@ def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
                 seen["dropouts"].append(stats["dropouts"])
                 seen["memory"].append(memory(server.pid))
                 if number % 60 == 0:
+                    before = page.evaluate("stridula.stats.latencies.length")
                     page.select_option("#case", CASES[number // 60 % len(CASES)])
+                    time.sleep(1.5)
+                    seen["case"] += page.evaluate(f"stridula.stats.latencies.splice({before})")
             seen["latency"] = page.evaluate("stridula.stats.latencies")
             seen["share"] = [(processor_time(server.pid) - ticks) / (time.monotonic() - began)]
             seen["output"] = [page.evaluate("1000 * stridula.late()")]
@@ -133,7 +137,8 @@ def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
 def table(seen: dict[str, list[float]], words: str) -> list[str]:
     """Return the measurements as lines of Markdown."""
     latency, fps = np.array(seen["latency"]), np.array(seen["fps"])
-    first, last = seen["memory"][0], seen["memory"][-1]
+    first, last, case = seen["memory"][0], seen["memory"][-1], np.array(seen["case"])
+    cases = f"| another case to ear [ms], {case.size} changes | | {{:.0f}} | | {{:.0f}} |"
     return [
         f"- {words}, load of the machine at the end {os.getloadavg()[0]:.2f}",
         "",
@@ -141,6 +146,7 @@ def table(seen: dict[str, list[float]], words: str) -> list[str]:
         "|---|---|---:|---:|---:|",
         f"| slider to ear [ms], {latency.size} changes, {seen['output'][0]:.0f} ms of it limiter and output | < 150 | "
         f"{np.median(latency):.0f} | {np.percentile(latency, 95):.0f} | {latency.max():.0f} |",
+        *([cases.format(np.median(case), case.max())] if case.size else []),
         f"| pictures per second | >= 30 | {np.median(fps):.0f} | {np.percentile(fps, 5):.0f} | {fps.min():.0f} |",
         f"| drop-outs in total | 0 | | | {seen['dropouts'][-1]:.0f} |",
         f"| processor time of the server, over that of one core | | {seen['share'][0]:.2f} | | |",
