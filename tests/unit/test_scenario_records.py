@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import tomllib
 
 import numpy as np
@@ -16,7 +17,7 @@ from unit.scenario_texts import CASES, MASS_ON_FLOOR, MASSES, PLATES, chain
 
 import stridula as st
 from stridula.records.packed import packed, unpacked
-from stridula.records.provenance import scenario_toml, toml
+from stridula.records.provenance import scenario_tables, scenario_toml, toml
 
 STEEL = st.Material(young=2.1e11, density=7800.0)
 SIMULATION = {"duration": 0.5, "scheme": "central difference", "step": 1e-6, "sample_rate": 5e4}
@@ -26,6 +27,15 @@ SIMULATION = {"duration": 0.5, "scheme": "central difference", "step": 1e-6, "sa
 def test_every_case_survives_provenance(name, tmp_path):
     scenario = st.load_scenario(name)
     assert reloaded(scenario.system, (), tmp_path).system == scenario.system
+
+
+@pytest.mark.parametrize("name", CASES + MASSES + PLATES)
+def test_tables_are_those_of_the_text(name):
+    """They need not be written and read again: their values are plain, of the same types."""
+    scenario = st.load_scenario(name)
+    tables = scenario_tables(scenario.system, scenario.probes or (), SIMULATION)
+    text, read = (json.dumps(one, sort_keys=True) for one in (tables, tomllib.loads(toml(tables))))
+    assert text == read
 
 
 def reloaded(system, probes, folder):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
@@ -12,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..records import Acceleration, Probe
-from ..records.provenance import is_pair, scenario_toml, toml
+from ..records.provenance import is_pair, scenario_tables, toml
 from ..scenarios.errors import ScenarioError
 from ..scenarios.keys import overridden
 from ..scenarios.load import Scenario, scenario_of_tables, tables_in_si
@@ -168,7 +167,7 @@ def _in_full(scenario: Scenario, tables: dict[str, Any]) -> dict[str, Any]:
     if scenario.system.is_spatial:
         described = tables_in_si(tables)
         return described | {"simulation": described.get("simulation", {}) | simulation}
-    return tomllib.loads(scenario_toml(scenario.system, scenario.probes or (), simulation))
+    return scenario_tables(scenario.system, scenario.probes or (), simulation)
 
 
 def _check_no_files(tables: dict[str, Any]) -> None:

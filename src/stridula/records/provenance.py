@@ -39,11 +39,16 @@ def scenario_toml(system: System, probes: Sequence[Probe], simulation: dict[str,
     A beam on a beam is written as slider, track and contact; any other system lists its bodies, contacts and
     connections. Small matrices are lists of rows, large ones lossless text.
     """
+    return toml(scenario_tables(system, probes, simulation))
+
+
+def scenario_tables(system: System, probes: Sequence[Probe], simulation: dict[str, Any]) -> dict[str, Any]:
+    """Return the tables of the same scenario, in plain types."""
     probed = [probe.point for probe in probes if hasattr(probe, "point")]
     tables = _pair(system) if is_pair(system) else _general(system, probed)
     tables["drives"] = [_drive(drive, system) for drive in system.drives]
     tables["simulation"] = {**_value(simulation), "probes": [_probe(probe, system) for probe in probes]}
-    return toml(tables)
+    return tables
 
 
 def toml(tables: Mapping[str, Any]) -> str:
