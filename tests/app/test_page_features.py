@@ -306,3 +306,21 @@ def test_silence_shows_text_instead_of_a_spectrogram(browsing):
     # A system slower than real time states its speed first.
     page.evaluate("stridula.keepUp(0.1)")
     assert page.locator("#speed option:checked").text_content() == "Slow, 1 : 11, as fast as possible"
+
+
+GAPS = """(speeds) => speeds.map((speed) => {
+  stridula.follow(speed);
+  stridula.fallBehind(true);
+  const [behind, pace, shown] = ["behind", "pace", "speed"].map((id) => document.getElementById(id));
+  return [behind.hidden, pace.textContent, shown.value];
+})"""
+
+
+def test_a_system_hardly_faster_than_real_time_is_shown_slower_if_its_sound_has_gaps(browsing):
+    page = browsing.open("#case=belt")
+    until(page, "stridula.now().speed > 1.5")
+    # Gaps at an ample speed have another cause, which is stated.
+    ample, barely, again, back = page.evaluate(GAPS, [2.0, 1.2, 1.2, 2.0])
+    assert ample == back == [False, "", "1"]
+    words = "Shown 1.2 times slower than real time, as fast as this machine can, and without sound."
+    assert barely == again == [True, words, "1.2"]

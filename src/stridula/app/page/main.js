@@ -27,6 +27,8 @@ const loop = new Loop(showLoop);
 const recorder = new Recorder(48000);
 const moves = new Map();
 const sent = new Map(); // Scenes not answered yet, by revision.
+const AMPLE = 1.5; // Seconds played per second with which gaps in the sound have other causes,
+const BARELY = 0.95; // those taken for a system with gaps that are not ample, and
 const SLOW = 1.05; // Seconds played per second below which the sound would have gaps,
 const MARGIN = 1.1; // and the margin left to other work then.
 const TOO_SLOW = 0.5; // Seconds played per second below which maps are computed only on request.
@@ -37,6 +39,7 @@ const LONG = 5; // Time of drawing above which every other frame is skipped [ms]
 const stats = { drawing: 0, revision: 0, played: 0, samples: 0, frames: 0, fps: 0, dropouts: 0, latency: null, latencies: [], connected: false, level: 0, peak: 0 };
 let hello, controls, map, bow, gallery, described, sources;
 let turned = "null"; // The controls shown, if not those of two beams.
+let played = null; // Seconds played per second, null for two beams, which any machine plays in real time.
 let slowest = 1; // Seconds needed to play one second, 1 if it keeps up with the sound.
 let revision = 0;
 let begun = 0; // The revision at which the motion began.
@@ -50,7 +53,7 @@ stream.onmessage = ({ data }) => {
   else if (data.told) told(data.told);
   else if (data.file) save(data.file);
   else if (data.lost) lost(data);
-  else if ("behind" in data) $("behind").hidden = !data.behind;
+  else if ("behind" in data) fallBehind(data.behind);
 };
 
 function told(message) {
@@ -65,11 +68,7 @@ function told(message) {
     stroke: () => stroke(message),
     theory: () => theory(message),
     now: () => message.revision >= begun && goesOn(message),
-    speed: () => {
-      // The load of the machine varies: only a clearly different speed changes the pace.
-      const needed = paceOf(message.speed);
-      if (needed > 1.1 * slowest || needed < 0.8 * slowest) keepUp(message.speed);
-    },
+    speed: () => follow(message.speed),
     "map row": () => map?.take(message),
     "map done": () => map?.done(),
   };
@@ -154,7 +153,8 @@ function shown(message) {
   controls.show(message.values);
   scene.places = message.places;
   offer(message);
-  keepUp(message.speed);
+  if (message.goes_on) follow(message.speed);
+  else keepUp(message.speed);
   putBack(message);
   pictures.describe(message);
   map.follow();
@@ -193,8 +193,26 @@ function paceOf(speed) {
   return needed < 10 ? Math.ceil(10 * needed) / 10 : Math.ceil(needed);
 }
 
+// The load of the machine varies: only a clearly different speed changes the pace.
+function follow(speed) {
+  const needed = paceOf(speed);
+  if (needed > 1.1 * slowest || needed < 0.8 * slowest || isAmple(speed)) keepUp(speed);
+  played = speed;
+}
+
+function isAmple(speed) {
+  return speed === null || speed >= AMPLE;
+}
+
+// The longest queue of sound is too short, or no longer: a system hardly faster than real time is too slow for sound.
+function fallBehind(is) {
+  if (is && slowest === 1 && !isAmple(played)) keepUp(BARELY);
+  $("behind").hidden = !is || $("speed").value !== "1";
+}
+
 // Systems slower than real time are played as fast as possible, with a notice.
 function keepUp(speed) {
+  played = speed;
   const needed = paceOf(speed);
   const own = [...$("speed").options].find((one) => one.dataset.own);
   if (needed === slowest) return;
@@ -575,7 +593,7 @@ setInterval(() => {
   $("tone").textContent = tone ? `strongest tone ${tone < 1000 ? `${Math.round(tone)} Hz` : `${(tone / 1000).toFixed(2)} kHz`}` : "";
 }, 1000);
 
-window.stridula = { keepUp, loop, space, stats, late: () => sound.late, shares: () => pictures.shares, scene, slots, now: () => described };
+window.stridula = { fallBehind, follow, keepUp, loop, space, stats, late: () => sound.late, shares: () => pictures.shares, scene, slots, now: () => described };
 theme(localStorage.getItem("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
 pace();
 $("undo").disabled = $("redo").disabled = true;
