@@ -138,7 +138,9 @@ def table(seen: dict[str, list[float]], words: str) -> list[str]:
     """Return the measurements as lines of Markdown."""
     latency, fps = np.array(seen["latency"]), np.array(seen["fps"])
     first, last, case = seen["memory"][0], seen["memory"][-1], np.array(seen["case"])
-    cases = f"| another case to ear [ms], {case.size} changes | | {{:.0f}} | | {{:.0f}} |"
+    cases = []
+    if case.size:
+        cases = [f"| another case to ear [ms], {case.size} changes | | {np.median(case):.0f} | | {case.max():.0f} |"]
     return [
         f"- {words}, load of the machine at the end {os.getloadavg()[0]:.2f}",
         "",
@@ -146,7 +148,7 @@ def table(seen: dict[str, list[float]], words: str) -> list[str]:
         "|---|---|---:|---:|---:|",
         f"| slider to ear [ms], {latency.size} changes, {seen['output'][0]:.0f} ms of it limiter and output | < 150 | "
         f"{np.median(latency):.0f} | {np.percentile(latency, 95):.0f} | {latency.max():.0f} |",
-        *([cases.format(np.median(case), case.max())] if case.size else []),
+        *cases,
         f"| pictures per second | >= 30 | {np.median(fps):.0f} | {np.percentile(fps, 5):.0f} | {fps.min():.0f} |",
         f"| drop-outs in total | 0 | | | {seen['dropouts'][-1]:.0f} |",
         f"| processor time of the server, over that of one core | | {seen['share'][0]:.2f} | | |",

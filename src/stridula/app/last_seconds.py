@@ -98,7 +98,7 @@ class LastSeconds:
 
     def keep(self, part: Part, source: Source) -> None:
         """Keep a part in place of any kept for the same time, and discard those that are too old."""
-        begins = part.clock - len(part.sound) / self.rate
+        begins = part.clock - part.samples / self.rate
         while self._parts and self._parts[-1].clock > begins + 0.5 / self.rate:
             self._samples -= len(self._parts.pop().sound)
         chunk = part.chunk

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -82,13 +83,12 @@ class Stop:
         Reason for the end.
     goes_on : bool
         Whether another stroke begins.
-    samples : int
-        Zero.
     """
 
     why: str
     goes_on: bool
-    samples: int = field(default=0, init=False)
+    # A part without sound.
+    samples: ClassVar[int] = 0
 
 
 def packed(part: Part) -> bytes:
@@ -100,7 +100,7 @@ def packed(part: Part) -> bytes:
     deflections of the track, status and travel of each contact. All are little-endian, with a zero at the end if their
     number is odd, so that parts can be joined.
     """
-    samples = len(part.sound)
+    samples = part.samples
     thinned = THINNED if samples % THINNED == 0 else 1
     contact, shapes = part.chunk.contact, part.shapes
     shares = part.chunk.status_share.reshape(-1, thinned, 3).mean(axis=1)

@@ -70,7 +70,8 @@ class Session:
         self.scene: Scene | None = None
         self.source, self.repeats = "pressure", True
         self._tasks: dict[str, asyncio.Task[None]] = {}
-        self._began, self._played = clock.monotonic(), 0
+        # Samples requested since a time, and samples given.
+        self._began, self._played, self._given = clock.monotonic(), 0, 0
         # Hash of the last drawing.
         self._drawn: str | None = None
         # Seconds of a system played per second; time taken and samples played since its measurement.
@@ -131,9 +132,8 @@ class Session:
 
     async def _listen(self, message: Listen) -> None:
         if self.instrument is not None:
-            before = self.instrument.given_samples
             self.instrument.listen_to(message.source, self._kept(message))
-            await self._send_anew(await self._anew(before))
+            await self._send_anew(await self._anew())
         self.source = message.source
 
     async def _repeat(self, message: Repeat) -> None:
@@ -153,7 +153,8 @@ class Session:
             other = await self._prepared(played)
             async with self._changing:
                 kept = self._kept(scene, clock.monotonic() - came)
-                goes_on, is_anew = await self._play(played, scene.revision, other, kept)
+                goes_on = await self._play(played, scene.revision, other, kept)
+                is_anew = await self._anew()
                 self.scene = found.scene
                 # Before the first part of it.
                 await self._tell_scene(scene.revision, goes_on, refused)
@@ -191,15 +192,15 @@ class Session:
             return None
         return message.kept + round(since * RATE)
 
-    async def _anew(self, before: int) -> bool:
+    async def _anew(self) -> bool:
         """Tell the page from where on the sound is computed anew, if not from where it was; return whether it is."""
         assert self.instrument is not None
-        undone = before - self.instrument.given_samples
+        undone, self._given = self._given - self.instrument.given_samples, self.instrument.given_samples
         if not undone:
             return False
         # These samples do not count as requested.
         self._played -= undone
-        await self._tell("anew", samples=self.instrument.given_samples)
+        await self._tell("anew", samples=self._given)
         return True
 
     async def _send_anew(self, is_anew: bool) -> None:
@@ -213,9 +214,8 @@ class Session:
 
     async def _play(
         self, played: Playable, revision: int, other: tuple[Instrument, float | None] | None, kept: int | None
-    ) -> tuple[bool, bool]:
-        """Play a scenario, or another one that is prepared; return whether the motion continues, and its sound anew."""
-        before = 0 if self.instrument is None else self.instrument.given_samples
+    ) -> bool:
+        """Play a scenario, or another one that is prepared, and return whether the motion continues."""
         if other is None:
             assert self.instrument is not None
             is_quick = self.instrument.played.is_fast and played.system.bodies == self.instrument.played.system.bodies
@@ -229,7 +229,7 @@ class Session:
                 self.instrument.begin_as(begun, revision, kept)
         if not goes_on:
             self.speed, self._taken, self._made = speed, 0.0, 0
-        return goes_on, await self._anew(before)
+        return goes_on
 
     async def _tell_scene(self, revision: int, goes_on: bool, refused: dict[str, list[str]]) -> None:
         assert self.instrument is not None
@@ -297,12 +297,13 @@ class Session:
                 if isinstance(part, Stop):
                     await self._tell("stroke", why=part.why, goes_on=part.goes_on)
                 else:
-                    self._made += len(part.sound)
+                    self._made += part.samples
                     parts.append(packed(part))
             if self.speed is not None and clock.monotonic() - start > LONGEST:
                 break
             if samples < pull.samples or number % PARTS_AT_ONCE == PARTS_AT_ONCE - 1:
                 await asyncio.sleep(0)
+        self._given = instrument.given_samples
         await _sent(self.socket.send_bytes(b"".join(parts)))
 
     def _cut(self, pull: Pull) -> list[int]:
@@ -323,9 +324,8 @@ class Session:
         await _sent(self.socket.send_bytes(content))
 
     async def _restart(self, instrument: Instrument, message: Restart) -> None:
-        before = instrument.given_samples
         instrument.restart(self._kept(message))
-        await self._send_anew(await self._anew(before))
+        await self._send_anew(await self._anew())
 
     async def _no_map(self, instrument: Instrument, message: NoMap) -> None:
         self._stop("map")

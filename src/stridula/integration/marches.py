@@ -158,9 +158,8 @@ class March:
         self.runs, per_block, width = self._arrangement()
         self.layout = layout_of(blocks, per_block)
         blocks = [*blocks, *[blocks[-1]] * (self.runs - self.given)]
-        states = [*states, *[states[-1]] * (self.runs - self.given)]
         self.scales = [scale_of(one.modes) for one in blocks]
-        rows = [rows_of(*each) for each in zip(blocks, states, self.scales, strict=True)]
+        rows = [rows_of(*each) for each in zip(blocks, self.scales, strict=True)]
         self.contact_count, runs = len(first.contacts.codes), self.runs
         self.modes = Modes(
             pack(self.layout, rows, width),
@@ -176,13 +175,13 @@ class March:
             columns(aligned(2 * len(first.turning), runs)),
             columns(aligned(OF_CONTACT * self.contact_count if first.turning else 0, runs)),
         )
-        carried = columns(side_by_side([state.carried.reshape(-1) for state in states]))
-        energies = columns(side_by_side([state.energies for state in states]))
-        self.carried = Carried(carried, carried.copy(), energies)
+        numbers = self.contact_count * at.CARRIED, self.contact_count * at.CARRIED, at.ENERGIES
+        self.carried = Carried(*(columns(aligned(count, runs)) for count in numbers))
         self.probe_count = len(first.probes.kinds)
         self.used = sorted({j for one in blocks for j in one.used})
         self.probes = self._probes([one.probes for one in blocks])
         self.room: tuple[Array, ...] = (aligned(0, 0),)
+        self.put(states)
 
     def _arrangement(self) -> tuple[int, int, int]:
         """Return the number of runs, the number of modes of each in a block, and the width of a block.
@@ -248,13 +247,15 @@ class March:
         return found
 
     def put(self, states: Sequence[State]) -> None:
-        """Continue from other states of the same systems."""
+        """Continue from given states of the systems."""
         where = self.layout
         states = [*states, *[states[-1]] * (self.runs - self.given)]
         for run, (state, scale) in enumerate(zip(states, self.scales, strict=True)):
             self.modes.rows[where.block, :2, where.lane + run] = (state.modal / scale + state.remainder).T
-        for name, own in (("carried", self.carried.carried), ("energies", self.carried.energies)):
-            own.reshape(-1, self.runs)[:] = np.stack([getattr(state, name).reshape(-1) for state in states], axis=1)
+        carried = np.stack([state.carried.reshape(-1) for state in states], axis=1)
+        energies = np.stack([state.energies for state in states], axis=1)
+        for own, given in zip(self.carried, (carried, carried, energies), strict=True):
+            own.reshape(given.shape)[:] = given
 
     def copy(self) -> March:
         """Return a copy in the same state."""

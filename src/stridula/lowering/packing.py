@@ -16,7 +16,6 @@ from .._kernels.turning import DRAG, TURN_ROWS
 from .._kernels.vectors import LANES
 from ..arrays import Array
 from ..bodies.paths import Waves
-from ..records.state import State
 from .blocks import Blocks, ContactBlocks, PathModes, Recurrence, TurningBlocks
 
 # Whether numba's compilation is disabled.
@@ -292,14 +291,13 @@ def scale_of(modes: Recurrence) -> Array:
     return np.asarray(scale)
 
 
-def rows_of(blocks: Blocks, state: State, scale: Array) -> Array:
-    """Return all rows over the modes of a run."""
+def rows_of(blocks: Blocks, scale: Array) -> Array:
+    """Return all rows over the modes of a run, those of its state, the first two, without values."""
     contacts, modes = blocks.contacts, blocks.modes
     count, size = len(contacts.paths), scale.size
     used = CONTACTS + 2 * count + 2 * len(modes.loads) + len(blocks.probes.rows)
     # An odd number of vectors, so that the same row of all blocks does not compete for a part of the cache.
     rows = np.zeros((used + 1 - used % 2, size))
-    rows[:2] = state.modal / scale + state.remainder
     rows[2:4] = modes.block[[at.B, at.R]]
     for along in contacts.paths:
         if along is not None:

@@ -197,7 +197,7 @@ function paceOf(speed) {
 function follow(speed) {
   const needed = paceOf(speed);
   if (needed > 1.1 * slowest || needed < 0.8 * slowest || isAmple(speed)) keepUp(speed);
-  played = speed;
+  else played = speed;
 }
 
 function isAmple(speed) {
