@@ -9,7 +9,7 @@ import sys
 
 from .caches import KERNEL, incomplete_cache
 
-KERNELS = {"march.march_run", "march.march_runs"}
+KERNELS = {f"march.march_{kind}" for kind in ("single", "several", "single_abreast", "several_abreast")}
 
 
 def counts(*words, **environment):

@@ -39,9 +39,17 @@ def _is_ours(thing):
 _march = on_card(march)
 
 
-@cuda.jit
-def march_each(runs, parts):
-    """March `runs` runs, one in each thread."""
-    run = cuda.grid(1)
-    if run < runs:
-        _march(0.0, run, runs, parts)
+def _each(several):
+    """Return the kernel for a kind of system, as in `march`."""
+
+    @cuda.jit
+    def march_each(runs, parts):
+        """March `runs` runs, one in each thread."""
+        run = cuda.grid(1)
+        if run < runs:
+            _march(0.0, several, run, runs, parts)
+
+    return march_each
+
+
+march_each_single, march_each = _each(None), _each(True)

@@ -53,15 +53,15 @@ def record_row(parts, sample, n, run, runs, zero):
 
 
 @numba.njit(fastmath=False, **ENTRY)
-def march(zero, run, runs, parts):
+def march(zero, several, run, runs, parts):
     """March through the samples of the records, or until all runs have ended.
 
     Quantities of a run have a column for each run; several numbers of a kind have groups of columns. `zero` has the
     type of the numbers of a run: a number, or a vector of several runs; `run` is the first of these runs, `runs` the
-    number of columns.
+    number of columns. `several` is None for a single contact between bodies of uncoupled modes that do not turn: only
+    the steps of the given kind are compiled.
     """
     sizes, timing, signals = parts.sizes, parts.timing, parts.imposed.signals
-    single = sizes.contacts == 1 and sizes.coupled == 0 and parts.turning.spans.shape[0] == 0
     begin(parts, run, zero)
     ended, completed = zero, zero
     touch, free, w = (zero, zero, zero, zero), (zero, zero, zero), (zero, zero, zero, zero)
@@ -70,7 +70,7 @@ def march(zero, run, runs, parts):
         begin_row(parts, run, zero)
         for i in range(timing.steps_per_sample):
             change_loads(parts, n, run, runs, zero)
-            if single:
+            if several is None:
                 loop = (touch, pending, sine, advance)
                 free, w, touch, leaves, why = touch_one(parts, n, loop, ended, run, runs, zero)
                 sine = 2 - sine
@@ -81,7 +81,7 @@ def march(zero, run, runs, parts):
                 ended, completed = leave(ended, completed, leaves, why, sample, parts.state, run, zero)
                 if everywhere(ended > 0.0):
                     break
-            if single:
+            if several is None:
                 advance = keep_one(parts, n, free, w, touch, run, runs, zero)
                 following = i + 1 < timing.steps_per_sample
                 pending = following and not differ(signals, n + 1, sizes.loads, run, runs, zero)
@@ -111,18 +111,30 @@ def march(zero, run, runs, parts):
 
 
 @numba.njit(**ENTRY)
-def march_run(parts):
-    """March one run."""
-    march(0.0, 0, 1, parts)
+def march_single(parts):
+    """March one run with a single contact."""
+    march(0.0, None, 0, 1, parts)
 
 
 @numba.njit(**ENTRY)
-def march_runs(parts):
-    """March `LANES` runs side by side."""
-    march(spread(0.0), 0, LANES, parts)
+def march_several(parts):
+    """March one run of any kind."""
+    march(0.0, True, 0, 1, parts)
 
 
-def march_one_by_one(runs, parts):
+@numba.njit(**ENTRY)
+def march_single_abreast(parts):
+    """March `LANES` runs with a single contact side by side."""
+    march(spread(0.0), None, 0, LANES, parts)
+
+
+@numba.njit(**ENTRY)
+def march_several_abreast(parts):
+    """March `LANES` runs of any kind side by side."""
+    march(spread(0.0), True, 0, LANES, parts)
+
+
+def march_one_by_one(runs, several, parts):
     """March runs one after the other, in plain Python without compilation."""
     for run in range(runs):
-        march(0.0, run, runs, parts)
+        march(0.0, several, run, runs, parts)

@@ -36,13 +36,14 @@ from .block_rows import (
 )
 from .lanes import entry, fused, load, spread, store, total
 
-# Strict arithmetic: a step is the same to the last bit wherever it is completed. No reference counting: arrays come
-# from Python and stay.
-OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy", "forceinline": True, "fastmath": False, "_nrt": False}
+# No reference counting: arrays come from Python and stay. No wrappers for callers in C: there are none.
+SHARED: dict[str, Any] = {"cache": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
+# Strict arithmetic: a step is the same to the last bit wherever it is completed.
+OPTIONS: dict[str, Any] = {**SHARED, "forceinline": True, "fastmath": False}
 # For functions that mainly call others, inlined as Python: compiled apart, all that they call would be optimised again.
-PASTED: dict[str, Any] = {"cache": True, "error_model": "numpy", "inline": "always", "fastmath": False, "_nrt": False}
+PASTED: dict[str, Any] = {**SHARED, "inline": "always", "fastmath": False}
 # For functions called from Python, which let other threads run.
-ENTRY: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False}
+ENTRY: dict[str, Any] = {**SHARED, "nogil": True}
 
 
 @numba.njit(**OPTIONS)

@@ -102,12 +102,13 @@ class CudaMarch(March):
         return twin
 
     def _march(self, imposed: Imposed, records: Records) -> None:
-        from .._kernels.cuda import march_each
+        from .._kernels.cuda import march_each, march_each_single
 
         imposed, filled = self._moved(imposed), self._moved(records)
         modes, paths, contacts, turning, carried, probes = self.there
         parts = Parts(self.layout.sizes, self.timing, modes, paths, contacts, turning, carried, imposed, probes, filled)
         grid = -(-self.runs // self.threads_per_block)
-        march_each[grid, self.threads_per_block](self.runs, parts)
+        kernel = march_each_single if self.several is None else march_each
+        kernel[grid, self.threads_per_block](self.runs, parts)
         for array, output in zip(filled, records, strict=True):
             array.copy_to_host(output)

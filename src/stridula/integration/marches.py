@@ -12,7 +12,13 @@ import numpy as np
 
 from .._kernels import layout as at
 from .._kernels.block_rows import CONTACTS
-from .._kernels.march import march_one_by_one, march_run, march_runs
+from .._kernels.march import (
+    march_one_by_one,
+    march_several,
+    march_several_abreast,
+    march_single,
+    march_single_abreast,
+)
 from .._kernels.parts import Carried, Contacts, Modes, Parts, Paths, Probes, Records, Timing, Turning
 from .._kernels.parts import Imposed as ImposedOnRuns
 from .._kernels.turning import OF_CONTACT
@@ -38,11 +44,12 @@ from ..lowering.packing import (
     waves_of,
 )
 from ..records.state import State
-from .compiled_code import forget_other_sources
+from .compiled_code import compile_one_at_a_time, forget_other_sources
 from .contact_solve import GaussSeidel
 
 if not PLAIN:
-    forget_other_sources(march_run)
+    forget_other_sources(march_single)
+    compile_one_at_a_time(march_single)
 
 
 @dataclass(frozen=True)
@@ -230,8 +237,16 @@ class March:
     def kernel(self) -> Any:
         """The function that marches: a compiled one, or another callable if nothing is compiled for the processor."""
         if PLAIN:
-            return partial(march_one_by_one, self.runs)
-        return march_run if self.runs == 1 else march_runs
+            return partial(march_one_by_one, self.runs, self.several)
+        if self.several is None:
+            return march_single if self.runs == 1 else march_single_abreast
+        return march_several if self.runs == 1 else march_several_abreast
+
+    @property
+    def several(self) -> bool | None:
+        """None for a single contact without coupled modes and turning bodies, as in `march`."""
+        sizes = self.layout.sizes
+        return None if sizes.contacts == 1 and not sizes.coupled and not len(self.layout.turning) else True
 
     @property
     def states(self) -> list[State]:
