@@ -68,7 +68,7 @@ def test_a_surface_is_closed_and_moves_as_traces_say(body, area, volume):
         ),
         (
             st.ReducedBody(np.eye(2), np.eye(2), {"tip": (0, 1)}),
-            "body must have a surface that its modes move, got a ReducedBody, whose matrices do not tell where it is",
+            "body must have a surface that its modes move, got a ReducedBody, whose matrices do not contain its shape",
         ),
     ],
 )

@@ -23,7 +23,7 @@ INNER, OF_RADIUS = 4, 0.6
 
 
 def cells_of(half_waves: float) -> int:
-    """Return into how many cells a length is cut on which so many half-waves stand."""
+    """Return the number of cells into which a length with a number of half-waves is cut."""
     return max(FEWEST_CELLS, CELLS_A_WAVE * int(np.ceil(half_waves)))
 
 

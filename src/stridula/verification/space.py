@@ -92,7 +92,7 @@ def across() -> Outcome:
 CASES = (
     Case(
         "particle-on-a-slope",
-        "A particle thrown along a slope of friction's angle",
+        "A particle thrown along a slope at the angle of friction",
         "energy and momentum along the slope, closed form",
         slope,
     ),
