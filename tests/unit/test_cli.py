@@ -189,7 +189,7 @@ BAD = [
     (("run", "squeal", "--out", "none/run.nc"), "there is no folder 'none'"),
     (("run", "squeal", "--out", "."), "it is a directory"),
     (("run", "squeal", "--plot", "run.xyz"), "--plot must end in one of"),
-    (("run", "squeal", "--out", "a.png", "--plot", "a.png"), "another file"),
+    (("run", "squeal", "--out", "a.png", "--plot", "a.png"), "must differ from --out"),
     (("run", "squeal", "--nope"), "No such option"),
     (("run",), "Missing argument"),
     (("nope",), "No such command"),
@@ -318,7 +318,7 @@ def test_records_of_other_sampling_cannot_be_compared_and_bad_tables_not_written
         assert stridula("run", "squeal", *SHORT, "--set", f"sample_rate={rate}", "--out", name)[0] == 0
     code, out, err = stridula("compare", "a.nc", "b.nc")
     assert (code, out) == (2, "")
-    assert err == "stridula: b must have the sample interval of a, 1e-05 s, got 2e-05 s\n"
+    assert err == "stridula: b must have the same sample interval as a, 1e-05 s, got 2e-05 s\n"
     before = sorted(tmp_path.iterdir())
     for name, message in (("a.txt", "path must end in .csv or .mat"), ("none/a.csv", "no folder"), (".", "must end")):
         code, out, err = stridula("export", "a.nc", "--out", name)

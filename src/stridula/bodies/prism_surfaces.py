@@ -36,7 +36,7 @@ def beam_mesh(section: Any, length: float, cells: int) -> SolidMesh:
     ValueError
         If the section has no outline.
     """
-    words = "be a Rectangle or a Circle for a beam to have a surface; strings are heard through an st.Bridge"
+    words = "be a Rectangle or a Circle for a beam to have a surface; the sound of strings needs an st.Bridge"
     raise ArgumentError("section", words, section)
 
 

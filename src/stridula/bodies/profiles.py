@@ -66,8 +66,8 @@ class RectangleProfile:
     Raises
     ------
     ValueError
-        If a range does not rise, if a rectangle crosses the axis or overlaps another one, or if they are not connected
-        by their sides.
+        If a range does not increase, if a rectangle crosses the axis or overlaps another one, or if they are not
+        connected by their sides.
     """
 
     shape: ClassVar[str] = "rectangles"

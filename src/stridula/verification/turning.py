@@ -77,7 +77,7 @@ def disc_case() -> Outcome:
     worst = int(np.abs(found - known).argmax())
     rows = [
         Row(
-            "frequency in space, worst",
+            "frequency in space, at the largest error",
             float(known[worst]),
             float(found[worst]),
             1e-8 * known[worst],
