@@ -247,7 +247,7 @@ def survey(
     amplitude: Annotated[
         float,
         typer.Option(
-            metavar="X", help="Initial amplitude of a mode over that at which a contact opens, stops or slips."
+            metavar="X", help="Initial amplitude of a mode, relative to that at which a contact opens, stops or slips."
         ),
     ] = 1e-3,
     highest: Annotated[
