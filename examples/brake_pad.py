@@ -2,7 +2,7 @@
 Pad on a disc, node by node
 ===========================
 
-The modes of a brake pad on a disc that grow in sliding, and the first hundredth of a second of their growth.
+The growing modes of a brake pad on a sliding disc, and the first hundredth of a second of their growth.
 
 A disc of cast iron, clamped inside, turns under a pad of friction material, which is held by springs and pressed with
 600 N. Both are elastic bodies in space; the pad touches with fifteen of its nodes, each of which slides, sticks or

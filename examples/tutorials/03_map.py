@@ -43,8 +43,8 @@ for friction, word, hertz in zip(cut.friction.values, cut.regime.values, cut.fre
     print(f"friction {friction:.2f}: {word}" + (f" at {hertz:.0f} Hz" if word == "squeal" else ""))
 
 # %%
-# What does linear theory say?
-# ----------------------------
+# Linear theory
+# -------------
 # No mode grows on this map: linear theory of the held contact does not include motion that begins with a landing.
 
 counts = st.agreement(found)

@@ -99,7 +99,7 @@ def _target(path: str | os.PathLike[str]) -> Path:
         try:
             return Path(path).resolve()
         except RuntimeError as error:
-            raise OSError("its links lead back to themselves") from error
+            raise OSError("its links form a loop") from error
 
 
 def _sweep(folder: Path) -> None:

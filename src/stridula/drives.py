@@ -346,7 +346,7 @@ class InitialEquilibrium(Drive):
         Slip velocity at the start where nothing prescribes it [m/s], one for all contacts or a list with one for each;
         0 for contacts where it is prescribed. Its sign is the sense of sliding.
     mode : int or "most unstable", optional
-        Mode of vibration on top: its number from 0 on, by rising frequency, or most unstable; none if left out. The
+        Mode of vibration on top: its number from 0 on, by increasing frequency, or most unstable; none if left out. The
         number is that of `sliding_stability` at time 0; most unstable is the mode with the largest growth rate among
         those that vibrate, even if it is negative. With more than 600 degrees of freedom it is among the lowest 100.
     amplitude : float, optional

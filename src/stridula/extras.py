@@ -45,7 +45,7 @@ def require(package: str) -> None:
 
 def how_to_install(extra: str) -> str:
     """Return the command that installs an extra; there is no distribution of this name on the index."""
-    return f'pip install ".[{extra}]" in the sources'
+    return f'pip install ".[{extra}]" in the source folder'
 
 
 @contextmanager

@@ -185,11 +185,11 @@ class Sampled:
         times = np.array(self.time)
         if self.time[0] < 0.0:
             raise ArgumentError(
-                "time", "rise from 0 or above", self.time, got=f"{brief(self.time)}, from {self.time[0]!r}"
+                "time", "start at 0 or above", self.time, got=f"{brief(self.time)}, from {self.time[0]!r}"
             )
         falls = np.flatnonzero(times[1:] < times[:-1]) + 1
         thrice = np.flatnonzero(times[2:] == times[:-2]) + 2
-        for allowed, wrong in (("rise", falls), ("have no more than two points, a jump, at a time", thrice)):
+        for allowed, wrong in (("increase", falls), ("have at most two points, a jump, at the same time", thrice)):
             if wrong.size:
                 k = int(wrong[0])
                 got = f"time[{k}] = {self.time[k]!r} after {self.time[k - 1]!r}"

@@ -133,11 +133,11 @@ def test_a_map_without_valid_systems_is_empty(talk):
 @pytest.mark.parametrize(
     ("x", "named"),
     [
-        ({"key": "no.such.key", "low": 0.0, "high": 1.0}, "x must be a number of the page"),
-        ({"key": "contact.friction.law", "low": 0.0, "high": 1.0}, "x must be a number of the page"),
-        ({"key": "contact.friction.static", "low": 0.0, "high": 1.0}, "x must be a number of the page"),
-        ({"key": FRICTION, "low": 1.0, "high": 1.0}, "x must be a number of the page with low below high"),
-        ({"key": FRICTION, "low": 1.0, "high": 0.0}, "x must be a number of the page with low below high"),
+        ({"key": "no.such.key", "low": 0.0, "high": 1.0}, "x must be a key of a number on the page"),
+        ({"key": "contact.friction.law", "low": 0.0, "high": 1.0}, "x must be a key of a number on the page"),
+        ({"key": "contact.friction.static", "low": 0.0, "high": 1.0}, "x must be a key of a number on the page"),
+        ({"key": FRICTION, "low": 1.0, "high": 1.0}, "x must be a key of a number on the page, with low below high"),
+        ({"key": FRICTION, "low": 1.0, "high": 0.0}, "x must be a key of a number on the page, with low below high"),
         ({"key": FRICTION, "low": 0.0}, "map.x.high"),
         ({"key": FRICTION, "low": 0.0, "high": 1e300}, "map.x.high"),
     ],

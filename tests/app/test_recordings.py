@@ -27,7 +27,7 @@ def test_what_was_not_played_cannot_be_saved(talk, format):
     talk.scene()
     talk.say("save", format=format)
     (problem,) = talk.until("problem", "file")["problems"]
-    assert problem == "something must have been played before it can be saved, got nothing yet"
+    assert problem == "page must have played something before it can save, got nothing yet"
     assert len(talk.play(480).sound) == 480
 
 

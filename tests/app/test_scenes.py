@@ -160,7 +160,7 @@ def test_a_text_reads_no_file(plays, text, named, tmp_path):
 def test_only_keys_of_the_page_are_set(plays):
     for key in ("slider.elements", "simulation.duration", "title", "no.such.key", "base"):
         answer = plays.scene("stable-sliding", {key: 1})
-        assert answer["problems"] == [f"key must be one of the page's, got {key!r}"]
+        assert answer["problems"] == [f"key must be a key of the page, got {key!r}"]
 
 
 @pytest.mark.parametrize("case", ["glas", "../squeal", "/etc/passwd", ""])

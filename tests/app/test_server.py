@@ -129,7 +129,7 @@ def test_a_page_from_elsewhere_is_refused(server, origin):
 def test_another_host_must_be_allowed():
     done = app("--host", "0.0.0.0", "--port", "0")
     assert (done.returncode, done.stdout) == (2, "")
-    assert re.fullmatch(r"stridula: host must be .* unless --open lets other machines in, got '0.0.0.0'\n", done.stderr)
+    assert re.fullmatch(r"stridula: host must be .* unless --open is given, got '0.0.0.0'\n", done.stderr)
 
 
 @pytest.mark.parametrize(

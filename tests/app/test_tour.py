@@ -98,7 +98,7 @@ def test_it_squeals_near_the_stated_tone():
 
 
 def test_it_judders_at_the_stated_rate():
-    assert values(BY_TITLE["Judder"])["contact.friction.coefficient"] == number("Judder", r"friction of ([\d.]+),")
+    assert values(BY_TITLE["Judder"])["contact.friction.coefficient"] == number("Judder", r"friction of ([\d.]+):")
     assert seen("Judder").all("regime") == ["judder"] * SECONDS
     assert seen("Judder").all("impact_rate") == pytest.approx([number("Judder", r"some (\d+)")] * SECONDS, rel=0.1)
 

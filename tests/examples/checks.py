@@ -70,7 +70,7 @@ def check_python(names: Mapping[str, Any], printed: str) -> None:
 
 def check_start(names: Mapping[str, Any], printed: str) -> None:
     """More friction makes it squeal, and linear theory has the stated mode."""
-    assert re.search(r"modes grow, one of them at 28\d\d Hz", printed)
+    assert re.search(r"modes grow, at \[[\d. \n]*\b28\d\d\.", printed)
     assert re.findall(r"^(0\.8|1\.1) squeal$", printed, re.MULTILINE) == ["0.8", "1.1"]
     assert names["found"].sizes == {"friction": 4, "angle": 3}
 

@@ -157,7 +157,7 @@ def main() -> int:
     kinds = {asked.kind: modules()[asked.kind]} if asked.kind else modules()
     if asked.number is not None:
         if asked.kind is None:
-            parser.error("--number must go with --kind")
+            parser.error("--number must be used with --kind")
         repeated(kinds[asked.kind], asked.seed, asked.number)
         return 0
     # Compiled, imported and cached once, before processes fork.

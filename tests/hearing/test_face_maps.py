@@ -166,7 +166,7 @@ def test_the_face_of_a_run():
         (lambda found: plot.surface(found, time=-1.0), "time must be from 0 to 8e-05 s, got -1.0"),
         (lambda found: plot.surface(found, time=1e-5, span=(0.0, 1.0)), "time must be left out with a span"),
         (lambda found: plot.surface(found, span=(1.0, 2.0)), "span must hold a sample"),
-        (lambda found: plot.surface(found, span=(2.0, 1.0)), "span must rise"),
+        (lambda found: plot.surface(found, span=(2.0, 1.0)), "span must end after it starts"),
         (lambda found: plot.surface(found, span=3.0), "span must be a start and an end"),
         (lambda found: plot.animate_surface(found, "a.avi"), "out must end in one of .mp4, .gif"),
         (lambda found: plot.animate_surface(found, "a.gif", slowdown=0.0), "slowdown must be above 0"),

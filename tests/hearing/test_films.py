@@ -137,7 +137,7 @@ def test_an_mp4_can_be_played(pair, tmp_path):
 def test_without_an_encoder_the_message_names_a_remedy(pair, monkeypatch, tmp_path):
     monkeypatch.setattr(reels, "_encoder", lambda: None)
     with pytest.raises(
-        ValueError, match=r'out must end in \.gif without an encoder \(pip install "\.\[video\]" in the sources\)'
+        ValueError, match=r'out must end in \.gif without an encoder \(pip install "\.\[video\]" in the source folder\)'
     ):
         plot.animate(pair.system, tmp_path / "a.mp4")
 

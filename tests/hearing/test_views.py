@@ -139,6 +139,7 @@ def test_bad_input_is_one_line(rig, call, message):
 def test_without_pyvista_one_line_reports_it(rig, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyvista", None)
     with pytest.raises(
-        ImportError, match=r'^views need pyvista, which is not installed: pip install "\.\[view\]" in the sources$'
+        ImportError,
+        match=r'^views need pyvista, which is not installed: pip install "\.\[view\]" in the source folder$',
     ):
         plot.view(rig.system)

@@ -58,7 +58,7 @@ def test_a_run_that_leaves_its_track_leaves_the_others_alone(comparisons):
 def test_without_numba_cuda_the_package_to_install_is_named(monkeypatch):
     monkeypatch.setattr(cuda_march, "find_spec", lambda name: None)
     with pytest.raises(
-        RuntimeError, match=r'device="cuda" needs numba-cuda, .*: pip install "\.\[cuda\]" in the sources$'
+        RuntimeError, match=r'device="cuda" needs numba-cuda, .*: pip install "\.\[cuda\]" in the source folder$'
     ):
         cuda_march.require_cuda()
 
@@ -67,7 +67,7 @@ def test_without_numba_cuda_the_package_to_install_is_named(monkeypatch):
     ("error", "words"),
     [
         ("\nCUDA driver library cannot be found.\nEnsure that...\n", "the NVIDIA driver, which was not found"),
-        ("CUDA_ERROR_NO_DEVICE (100)", "a GPU: there is a driver and no GPU"),
+        ("CUDA_ERROR_NO_DEVICE (100)", "a GPU: there is a driver but no GPU"),
         ("CUDA_ERROR_SYSTEM_DRIVER_MISMATCH\n(803)", r"CUDA to work: CUDA_ERROR_SYSTEM_DRIVER_MISMATCH \(803\)"),
     ],
 )

@@ -357,7 +357,7 @@ def jammed() -> st.System:
         ),
         (lambda: dragged(st.RigidTrack(), velocity=0.0), {}, "contact 1 is held by friction"),
         (rising, {}, "drives must let bodies follow the motion along the normal of contact 1"),
-        (mass_on_a_belt, {"status": "sticking"}, "status must let contact 1 slide, whose track nothing can follow"),
+        (mass_on_a_belt, {"status": "sticking"}, "status must let contact 1 slide: nothing can follow its track"),
         (
             pushed,
             {"status": "sticking"},

@@ -138,7 +138,7 @@ def test_a_blow_on_a_disc_is_heard_as_its_response_says():
         found = np.exp(-1j * w * heard.time.values) @ heard.values * 5e-5
         assert np.abs(found - known).max() < 0.02 * np.abs(known).max()
     assert heard.attrs["bodies"] == ["track"]
-    assert "without a surface and not heard: slider" in heard.attrs["notes"]
+    assert "not included, without a surface: slider" in heard.attrs["notes"]
     assert 0.0 < heard.attrs["fit_error"][0] < 0.1
 
 
@@ -168,7 +168,7 @@ def test_a_record_is_heard_without_the_mesh(stridula, tmp_path):
     code, out, err = stridula("sound", "run.nc", "--listener", "0.3,0.3,0.5", "--wav", "a.wav")
     assert (code, err) == (0, "")
     assert "a.wav: 1 channel, 48 kHz" in out
-    assert "without a surface and not heard: slider" in out
+    assert "not included, without a surface: slider" in out
     body = again.track
     bare = replace(body, outer_surface=None)
     assert not bare.has_surface

@@ -49,8 +49,8 @@ def test_results_do_not_depend_on_the_plane(plane, seed):
 def test_bad_placements_are_refused():
     solid = st.RigidBody(1.0)
     for make, words in (
-        (lambda: st.ModalBody.placed(solid, {"centre": "centre"}), "body must be a body of the plane"),
-        (lambda: st.ModalBody.placed(3.0, {"centre": "centre"}), "body must be a body of the plane"),
+        (lambda: st.ModalBody.placed(solid, {"centre": "centre"}), "body must be a body in the plane"),
+        (lambda: st.ModalBody.placed(3.0, {"centre": "centre"}), "body must be a body in the plane"),
         (lambda: st.ModalBody.placed(TRACK, {"a": 0.1}, x=(1.0, 0.0, 0.0), y=(1.0, 0.0, 0.0)), "at right angles"),
         (lambda: st.ModalBody.placed(TRACK, {"a": 0.1}, x=(2.0, 0.0, 0.0)), "unit vectors"),
         (lambda: st.ModalBody.placed(TRACK, {"a": 7.0}), "position"),
@@ -86,5 +86,5 @@ def test_with_an_origin_it_has_its_surface_there():
     for given in ((0.0, 1.0), [[0.0, 0.0, 0.0]]):
         with pytest.raises(st.ArgumentError, match=r"^origin must be three numbers"):
             st.ModalBody.placed(ROD, {"tip": "tip"}, origin=given)
-    with pytest.raises(st.ArgumentError, match=r"^origin must be three numbers, of a beam or a plate"):
+    with pytest.raises(st.ArgumentError, match=r"^origin must be three numbers, for a beam or a plate only"):
         st.ModalBody.placed(st.PointMass(1.0), {"centre": "centre"}, origin=place)

@@ -185,7 +185,7 @@ def test_a_moving_slider_is_heard_from_the_middle_of_its_way():
     middle = np.array([PLACE[0] - 0.05, *PLACE[1:]])
     at_rest = st.radiate(record(pulse(), 0.0, 0.05), system, tuple(middle.tolist()), bodies=[system.slider])
     np.testing.assert_allclose(found.values, at_rest.values, atol=1e-9 * np.abs(found.values).max())
-    assert "it slides over 0.1 m and is heard from the middle of its way" in found.attrs["notes"]
+    assert "it slides over 0.1 m; its sound is computed at the middle of its path" in found.attrs["notes"]
 
 
 def test_two_ears_above_the_track_by_default_and_above_the_rod_without_one():
@@ -207,7 +207,7 @@ def test_bodies_without_a_surface_are_reported():
     system = st.System([st.PointContact(mass.centre, TRACK, at=0.1)])
     found = st.radiate(record(pulse(), 0.0, 0.1), system, PLACE)
     assert found.attrs["bodies"] == ["track"]
-    assert "not heard: bob" in found.attrs["notes"]
+    assert "not included: bob" in found.attrs["notes"]
 
 
 @pytest.mark.parametrize(

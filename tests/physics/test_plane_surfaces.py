@@ -63,12 +63,12 @@ def test_a_surface_is_closed_and_moves_as_traces_say(body, area, volume):
         (st.RigidBody(1.0), "body must have a surface that its modes move, got a RigidBody, which has no modes"),
         (
             st.ModalBeam(STEEL, st.Section(1e-6, 1e-13), 0.3, tension=60.0),
-            "section must be a Rectangle or a Circle for a beam to have a surface; strings are heard through an "
+            "section must be a Rectangle or a Circle for a beam to have a surface; the sound of strings needs an "
             "st.Bridge",
         ),
         (
             st.ReducedBody(np.eye(2), np.eye(2), {"tip": (0, 1)}),
-            "body must have a surface that its modes move, got a ReducedBody, whose matrices do not tell where it is",
+            "body must have a surface that its modes move, got a ReducedBody, whose matrices do not contain its shape",
         ),
     ],
 )

@@ -465,7 +465,10 @@ def test_omissions_are_reported():
     assert "left out" in heard.attrs["notes"]
     later = record(500).assign_coords(time=1.0 + np.arange(1, 501) / RATE)
     sound = st.radiate(later, BEAM, (0.1, 0.0, 0.5))
-    assert "the record continues another one; vibration left from that one is not included" in sound.attrs["notes"]
+    assert (
+        "the record continues another one; vibration left from the earlier record is not included"
+        in sound.attrs["notes"]
+    )
     assert float(sound.time[0]) == pytest.approx(1.0)
 
 

@@ -281,7 +281,7 @@ def test_a_start_in_equilibrium_stays_there(scheme):
 
 
 BAD = {
-    "tilts": (lambda: st.AxisymmetricBody(PLATE, STEEL, 4000.0, turning=1.0).modes(), "keeps the body from tilting"),
+    "tilts": (lambda: st.AxisymmetricBody(PLATE, STEEL, 4000.0, turning=1.0).modes(), "free to tilt"),
     "normal": (
         lambda: st.PointContact(st.RigidBody(1.0).centre, disc(1.0).at(HERE), normal=(0.0, 0.1, 1.0)),
         "at right angles to the velocity",

@@ -189,7 +189,7 @@ BAD = [
     (("run", "squeal", "--out", "none/run.nc"), "there is no folder 'none'"),
     (("run", "squeal", "--out", "."), "it is a directory"),
     (("run", "squeal", "--plot", "run.xyz"), "--plot must end in one of"),
-    (("run", "squeal", "--out", "a.png", "--plot", "a.png"), "another file"),
+    (("run", "squeal", "--out", "a.png", "--plot", "a.png"), "must differ from --out"),
     (("run", "squeal", "--nope"), "No such option"),
     (("run",), "Missing argument"),
     (("nope",), "No such command"),
@@ -318,7 +318,7 @@ def test_records_of_other_sampling_cannot_be_compared_and_bad_tables_not_written
         assert stridula("run", "squeal", *SHORT, "--set", f"sample_rate={rate}", "--out", name)[0] == 0
     code, out, err = stridula("compare", "a.nc", "b.nc")
     assert (code, out) == (2, "")
-    assert err == "stridula: b must have the sample interval of a, 1e-05 s, got 2e-05 s\n"
+    assert err == "stridula: b must have the same sample interval as a, 1e-05 s, got 2e-05 s\n"
     before = sorted(tmp_path.iterdir())
     for name, message in (("a.txt", "path must end in .csv or .mat"), ("none/a.csv", "no folder"), (".", "must end")):
         code, out, err = stridula("export", "a.nc", "--out", name)
@@ -514,7 +514,7 @@ def test_the_card_says_how_to_get_the_level():
     record, belt = squeal.simulate(), st.load_scenario("belt")
     assert how_to_get_the_level(record, squeal, "a.nc") == "not computed: `stridula sound a.nc` prints it at 1 m"
     assert how_to_get_the_level(record, squeal, None) == "not computed: --wav FILE.wav computes it at 1 m"
-    assert how_to_get_the_level(record, belt, None) == "none: no body of the system can be heard"
+    assert how_to_get_the_level(record, belt, None) == "none: no body of the system radiates sound"
     assert how_to_get_the_level(record.assign_attrs(ended="energy created"), squeal, None) == ""
 
 
@@ -566,7 +566,7 @@ def test_sweeps_of_samples_lists_and_tables(stridula, tmp_path):
 VARY = ("--vary", "friction=0.2:2:3")
 BAD_SWEEPS = [
     (("--vary", "frction=1:2:3"), "did you mean 'friction'?"),
-    (("--vary", "length=1:2:3"), "key must mean one place"),
+    (("--vary", "length=1:2:3"), "key must name one place"),
     ((*VARY, *VARY), "--vary must name each key once, got 'friction' twice"),
     ((*VARY, "--vary", "coefficient=1:2:3"), "which both mean contact.friction.coefficient"),
     ((*VARY, "--set", "coefficient=1"), "key must be set or varied, got both 'coefficient' and 'friction'"),
@@ -590,7 +590,7 @@ BAD_SWEEPS = [
     ((*VARY, "--sample", "3"), "--vary must be KEY=START:STOP with --sample"),
     (("--vary", "friction=1,2", "--sample", "3"), "got a list for 'friction'"),
     (("--vary", "friction=1:2", "--sample", "0"), "count must be at least 1"),
-    ((*VARY, "--seed", "3"), "--seed must go with --sample"),
+    ((*VARY, "--seed", "3"), "--seed must be used with --sample"),
     ((), "points must be given by --vary or by --points, got neither"),
     ((*VARY, "--points", "good.csv"), "points must be given by --vary or by --points, got both"),
     (("--points", "none.csv"), "cannot read 'none.csv'"),
@@ -598,8 +598,8 @@ BAD_SWEEPS = [
     (("--points", "header.csv"), "--points must hold a row of keys and at least one of values"),
     (("--points", "twice.csv"), "--points must name each key once"),
     ((*VARY, "--plot", "map.xyz"), "--plot must end in one of"),
-    ((*VARY, "--plot", "map.png"), "--plot must go with a grid of two keys"),
-    ((*VARY, "--vary", "angle=0:1:2", "--plot", "map.png"), "--plot must go with --measure regime"),
+    ((*VARY, "--plot", "map.png"), "--plot must be used with a grid of two keys"),
+    ((*VARY, "--vary", "angle=0:1:2", "--plot", "map.png"), "--plot must be used with --measure regime"),
     ((*VARY, "--workers", "0"), "workers must be at least 1"),
     ((*VARY, "--out", "folder"), "it is a directory"),
     ((*VARY, "--out", "none/map.nc"), "there is no folder 'none'"),

@@ -184,7 +184,7 @@ def test_a_silent_spectrogram_is_drawn(stridula):
 def test_omissions_of_a_coarse_record_are_reported(stridula):
     code, out, err = stridula("sound", "coarse.nc")
     assert (code, err) == (0, "")
-    assert "modes above what the record's sample rate carries are left out" in out
+    assert "modes above the limit of the record's sample rate are left out" in out
 
 
 def with_another_track_on_the_way(records):
@@ -263,12 +263,12 @@ BAD = [
     ((*IN, "--body", "trak"), "--body must be a body that radiates sound: track, slider, got 'trak'"),
     ((*IN, "--wav", "none/a.wav"), "there is no folder 'none'"),
     ((*IN, "--wav", "."), "it is a directory"),
-    ((*IN, "--wav", "run.nc"), "--wav must be another file than the record"),
-    ((*IN, "--wav", "a.png", "--plot", "a.png"), "--plot must be another file than --wav"),
+    ((*IN, "--wav", "run.nc"), "--wav must differ from the record"),
+    ((*IN, "--wav", "a.png", "--plot", "a.png"), "--plot must differ from --wav"),
     ((*IN, *WAV, "--plot", "a.xyz"), "--plot must end in one of"),
     ((*IN, "--bands", "a.xyz"), "--bands must end in one of"),
-    ((*IN, "--wav", "a.wav", "--bands", "a.wav"), "--bands must be another file than --wav"),
-    ((*IN, "--plot", "a.png", "--bands", "a.png"), "--bands must be another file than --plot"),
+    ((*IN, "--wav", "a.wav", "--bands", "a.wav"), "--bands must differ from --wav"),
+    ((*IN, "--plot", "a.png", "--bands", "a.png"), "--bands must differ from --plot"),
     (("sound", "open.nc", *WAV, "--plot", "a.png"), "--plot must have a sound of at least 0.02 s, got 0.005 s"),
     ((*IN, *WAV, "--full-scale", "1e-6"), "--full-scale must be at least "),
     ((*IN, *WAV, "--full-scale", "0"), "--full-scale must be above 0 Pa, got '0'"),
@@ -284,9 +284,9 @@ BAD = [
     (("sound", *WAV), "Missing argument"),
     (("run", "squeal", "--wav", "none/a.wav"), "there is no folder 'none'"),
     (("run", "squeal", "--wav", "."), "it is a directory"),
-    (("run", "squeal", "--wav", "a.nc", "--out", "a.nc"), "--wav must be another file than --out"),
-    (("run", "squeal", "--wav", "a.png", "--plot", "a.png"), "--wav must be another file than --plot"),
-    (("run", "run.nc", "--wav", "run.nc"), "--wav must be another file than the scenario"),
+    (("run", "squeal", "--wav", "a.nc", "--out", "a.nc"), "--wav must differ from --out"),
+    (("run", "squeal", "--wav", "a.png", "--plot", "a.png"), "--wav must differ from --plot"),
+    (("run", "run.nc", "--wav", "run.nc"), "--wav must differ from the scenario"),
     (("run", "belt", "--wav", "a.wav"), "system must have a body with a surface, which radiates sound"),
     (("run", "round.toml", "--wav", "a.wav"), "track must have a Rectangle as section"),
     (("sound", "open.nc", "--body", "track", "--bands", "a.png"), "--bands must hold a sound, got silence"),
@@ -361,7 +361,7 @@ def test_a_plate_in_space_is_heard_in_open_air_or_in_a_wall(stridula, tmp_path):
     code, out, err = stridula("run", "die.toml", "--out", "run.nc", "--wav", "run.wav")
     assert (code, err) == (0, "")
     assert "run.wav: 2 channels" in out
-    assert "without a surface and not heard: die; modes end at: sheet" in out
+    assert "not included, without a surface: die; modes end at: sheet" in out
     # Its length is along z, its normal along x, its width along y: the ears are a metre from it along its normal.
     ears = ("--listener", "1,0,0.15", "--listener=-1,0,0.15")
     assert stridula("sound", "run.nc", *ears, "--wav", "open.wav")[0] == 0
@@ -390,7 +390,7 @@ def test_only_contacts_on_a_track_drive_it(stridula, tmp_path, floor):
     st.save(run, "feet.nc")
     code, out, err = stridula("sound", "feet.nc", "--wav", "feet.wav", "--plot", "feet.png")
     assert (code, err) == (0, "")
-    assert "not heard: " in out
+    assert "not included: " in out
     pressure = st.radiate(run.isel(contact=[1]) if floor else run, track)
     assert float(np.abs(pressure).max()) > 0.0
     st.write_wav("same.wav", pressure)

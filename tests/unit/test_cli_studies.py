@@ -112,9 +112,9 @@ def test_stability_reports_an_unchanged_verdict(stridula):
 
 VARY = ("--vary", "friction=0.5:1:3")
 BAD_STABILITY = [
-    (("--plot", "a.png"), "--plot must go with --vary, got 'a.png' alone"),
-    (("--out", "a.nc"), "--out must go with --vary, got 'a.nc' alone"),
-    (("--highest", "9"), "--highest must go with --vary, got 9.0 alone"),
+    (("--plot", "a.png"), "--plot must be used with --vary, got 'a.png' alone"),
+    (("--out", "a.nc"), "--out must be used with --vary, got 'a.nc' alone"),
+    (("--highest", "9"), "--highest must be used with --vary, got 9.0 alone"),
     (("--set", "frition=1"), "did you mean 'friction'?"),
     (("--status", "slding"), "did you mean 'sliding'?"),
     (("--status", "sliding,sliding"), "status must have one value for each contact, 1 in all"),
@@ -140,7 +140,7 @@ BAD_STABILITY = [
     ((*VARY, "--out", "none/a.nc"), "there is no folder 'none'"),
     ((*VARY, "--out", "."), "it is a directory"),
     ((*VARY, "--plot", "a.xyz"), "--plot must end in one of"),
-    ((*VARY, "--out", "a.png", "--plot", "a.png"), "--plot must be another file than --out"),
+    ((*VARY, "--out", "a.png", "--plot", "a.png"), "--plot must differ from --out"),
 ]
 
 SEARCH = ("--vary", "friction=0.1:0.6", "--target", "travel=0:1", *SHORT)

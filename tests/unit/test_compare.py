@@ -144,7 +144,7 @@ def test_incomparable_records_are_reported(record):
     for other, message in [
         (
             st.load_scenario("squeal", {"duration": "5 ms", "sample_rate": 5e4}).simulate(),
-            "b must have the sample inter",
+            "b must have the same sample inter",
         ),
         (record.assign_coords(time=record["time"] + 1.0), "b must overlap a in time"),
         (record.isel(time=slice(0, 0)), "b must have samples to compare, got a record without any"),

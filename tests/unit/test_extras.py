@@ -79,7 +79,7 @@ def run_without(packages: set[str], code: str, folder: Path) -> subprocess.Compl
 def line(beginning: str) -> str:
     """Return the complete line."""
     package = beginning.rpartition(" ")[2]
-    return f'{beginning}, which is not installed: pip install ".[{NEEDED[package][1]}]" in the sources'
+    return f'{beginning}, which is not installed: pip install ".[{NEEDED[package][1]}]" in the source folder'
 
 
 def test_in_python_the_error_names_the_extra(tmp_path):
@@ -141,4 +141,4 @@ def test_the_extra_that_is_named_brings_the_package(package):
 def test_all_of_the_command_line_and_the_page_comes_with_all():
     extras = ("cli", "files", "page", "plot", "scenarios", "sound")
     assert brought("all") == {name for extra in extras for name in brought(extra)}
-    assert how_to_install("all") == 'pip install ".[all]" in the sources'
+    assert how_to_install("all") == 'pip install ".[all]" in the source folder'

@@ -118,10 +118,13 @@ def test_tables_of_unequal_or_too_short_length(time, value):
 @pytest.mark.parametrize(
     ("time", "message"),
     [
-        ((0.0, 1.0, 0.5), r"time must rise, got (0.0, 1.0, 0.5), with time[2] = 0.5 after 1.0"),
-        ((0.0, 1.0, 1.0, 1.0), "time must have no more than two points, a jump, at a time, got (0.0, 1.0, 1.0, 1.0), "),
+        ((0.0, 1.0, 0.5), r"time must increase, got (0.0, 1.0, 0.5), with time[2] = 0.5 after 1.0"),
+        (
+            (0.0, 1.0, 1.0, 1.0),
+            "time must have at most two points, a jump, at the same time, got (0.0, 1.0, 1.0, 1.0), ",
+        ),
         ((0.0, 0.0, 1.0), "time must be above 0 at a jump, got (0.0, 0.0, 1.0)"),
-        ((*range(10_000), 1.0), "time must rise, got a tuple, with time[10000] = 1.0 after 9999.0"),
+        ((*range(10_000), 1.0), "time must increase, got a tuple, with time[10000] = 1.0 after 9999.0"),
     ],
 )
 def test_times_that_do_not_rise(time, message):

@@ -138,7 +138,7 @@ def test_a_matlab_file_of_version_7_3_says_how_to_save_it(tmp_path):
     path = tmp_path / "body.mat"
     path.write_bytes(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(512) + b"\x89HDF\r\n\x1a\n")
     with pytest.raises(
-        ValueError, match=r"^cannot read '.*body.mat': a MATLAB file of version 7.3, save it with '-v7'$"
+        ValueError, match=r"^cannot read '.*body.mat': a MATLAB file of version 7.3; save it with '-v7'$"
     ):
         ReducedBody.read(path)
 
@@ -290,22 +290,31 @@ TEXTS = {
     "twice": ("1 1 5.0\n2 2 5.0\n1 1 5.0\n", r"each entry must occur once (assembled matrices), got two at 1, 1"),
     "twice labels": ("1,2,1,2,5.0\n1,2,1,2,6.0\n", r"each entry must occur once .*, got two at (1, 2), (1, 2)"),
     "market header": ("%%MatrixMarket tensor\n1 1 1\n", ""),
-    "market cut": (MARKET + "3 3 3\n1 1 1.0\n", "it must hold 3 entries, as its header says, it holds 1"),
-    "market cut to its header": (MARKET + "3 3 3\n", "it must hold 3 entries, as its header says, it holds none"),
-    "market more": (MARKET + "3 3 1\n1 1 1.0\n2 2 1.0\n", "it must hold 1 entries, as its header says, it holds more"),
+    "market cut": (MARKET + "3 3 3\n1 1 1.0\n", "it must hold 3 entries, as its header announces, but holds 1"),
+    "market cut to its header": (MARKET + "3 3 3\n", "it must hold 3 entries, as its header announces, but holds none"),
+    "market more": (
+        MARKET + "3 3 1\n1 1 1.0\n2 2 1.0\n",
+        "it must hold 1 entries, as its header announces, but holds more",
+    ),
     "market text": (MARKET + "3 3 1\n1 one 1.0\n", "line 3 must be 'row column value', got '1 one 1.0'"),
     "market exponent": (MARKET + "%\n3 3 2\n1 1 1.0\n2 2 1.5E", "line 5 must be 'row column value', got '2 2 1.5E'"),
     "market exponent within": (MARKET + "3 3 2\n1 1 1.0E\n2 2 1.5\n", "line 3 must be .*, got '1 1 1.0E'"),
     "market sign": (MARKET + "3 3 2\n1 1 1.0\n2 2 1.5E+", "line 4 must be .*, got '2 2 1.5E.'"),
     "market beyond": (MARKET + "3 3 1\n1 4 1.0\n", "rows and columns must be numbered from 1 to 3, got 4"),
     "market row zero": (MARKET + "3 3 1\n0 1 1.0\n", "rows and columns must be numbered from 1 to 3, got 0"),
-    "market skew": (MARKET.replace("general", "skew-symmetric") + "3 3 1\n2 1 1.0\n", ".* it says skew-symmetric"),
-    "market array cut": (ARRAY + "3 3\n1\n0\n0\n1\n", "it must hold 6 entries, as its header says, it holds 4"),
+    "market skew": (
+        MARKET.replace("general", "skew-symmetric") + "3 3 1\n2 1 1.0\n",
+        ".* but announces skew-symmetric",
+    ),
+    "market array cut": (ARRAY + "3 3\n1\n0\n0\n1\n", "it must hold 6 entries, as its header announces, but holds 4"),
     "market array exponent": (ARRAY + "3 3\n1\n0\n0\n1\n0\n1.5E", "line 8 must be one number, got '1.5E'"),
     "market array on a line": (ARRAY + "3 3\n1 0 0 1 0 1E", "line 3 must be one number, got '1 0 0 1 0 1E'"),
-    "market complex": (MARKET.replace("real", "complex") + "3 3 1\n1 1 1.0 0.0\n", ".* it says 1 complex"),
-    "market pattern": (MARKET.replace("real", "pattern") + "3 3 1\n1 1\n", ".* it says 1 pattern"),
-    "market entries": (MARKET + "3 3 999999999999\n1 1 1.0\n", ".* at most 9 real entries, it says 999999999999 real"),
+    "market complex": (MARKET.replace("real", "complex") + "3 3 1\n1 1 1.0 0.0\n", ".* but announces 1 complex"),
+    "market pattern": (MARKET.replace("real", "pattern") + "3 3 1\n1 1\n", ".* but announces 1 pattern"),
+    "market entries": (
+        MARKET + "3 3 999999999999\n1 1 1.0\n",
+        ".* at most 9 real entries, but announces 999999999999 real",
+    ),
     "market not square": (MARKET + "3 2 1\n1 1 1.0\n", "mass must be square, got 3 x 2"),
     "market large": (MARKET + "1000000 1000000 1\n1 1 1.0\n", "mass must have at most 300000 .*, got 1000000: reduce"),
 }
@@ -356,11 +365,11 @@ def test_files_of_more_than_2_gib_are_refused_unread(tmp_path, monkeypatch):
     with open(path, "wb") as file:
         file.write(b"1 1 1.0\n")
         os.truncate(path, 3 * 1024**3)
-    with pytest.raises(ValueError, match=r"^cannot read '.*mass.mtx': 3 GiB, at most 2 GiB are read$"):
+    with pytest.raises(ValueError, match=r"^cannot read '.*mass.mtx': 3 GiB, but at most 2 GiB are read$"):
         ReducedBody.read(mass=path, stiffness=path)
     monkeypatch.setattr(limits, "LARGEST_FILE", 10**5)
     np.savez_compressed(tmp_path / "b.npz", mass=np.zeros((400, 400)))
-    with pytest.raises(ValueError, match=r"^cannot read '.*b.npz': .* GiB when unpacked, at most 2 GiB are read$"):
+    with pytest.raises(ValueError, match=r"^cannot read '.*b.npz': .* GiB when unpacked, but at most 2 GiB are read$"):
         ReducedBody.read(tmp_path / "b.npz")
 
 
@@ -397,7 +406,7 @@ def test_damaged_containers_are_named_wherever_they_are_cut(kind, tmp_path):
 def test_containers_must_hold_matrices_and_points(tmp_path):
     path = tmp_path / "body.npz"
     np.savez(path, mass=MASS, other=MASS, point_tip=np.eye(SIZE)[:2])
-    with pytest.raises(ValueError, match=r"^cannot read '.*': it must hold stiffness, it holds mass, point_tip$"):
+    with pytest.raises(ValueError, match=r"^cannot read '.*': it must hold stiffness, but holds mass, point_tip$"):
         ReducedBody.read(path)
     np.savez(path, mass=MASS, stiffness=STIFFNESS)
     with pytest.raises(ValueError, match=r"^points must have at least one point, got none$"):
@@ -433,7 +442,7 @@ def test_a_container_with_two_different_mass_matrices_is_refused(kind, other, tm
     full = other.toarray() if kind == "npz" and scipy.sparse.issparse(other) else other
     held = {"mass": MASS, "M": full, "K": STIFFNESS, "point_tip": np.eye(SIZE)[:2]}
     np.savez(path, **held) if kind == "npz" else scipy.io.savemat(path, held)
-    with pytest.raises(ValueError, match=r"it must hold mass once, it holds mass and M, which differ$"):
+    with pytest.raises(ValueError, match=r"it must hold mass once, but holds mass and M, which differ$"):
         ReducedBody.read(path)
 
 
@@ -450,17 +459,17 @@ def test_which_files_go_together(tmp_path):
     container = tmp_path / "body.npz"
     ReducedBody(MASS, STIFFNESS, TIP).save(container)
     cases = [
-        ({}, "path must be one file with everything, or mass and stiffness must be one file each, got none of them"),
+        ({}, "path must be one file with all matrices, or mass and stiffness must be one file each, got none of them"),
         ({"mass": market}, "path must be one file .* got mass"),
         ({"path": container, "stiffness": market}, "path must be one file .* got path and stiffness"),
         ({"path": container, "mass": market, "stiffness": market}, "path must be one .* path and mass and stiffness"),
         (
             {"path": market},
-            "path must be a file with everything, .npz, .mat, .*, got '.*m.mtx'; files of one matrix each are given",
+            "path must be a file with all matrices: .npz, .mat, .*, got '.*m.mtx'; give files of single matrices",
         ),
         (
             {"mass": container, "stiffness": market},
-            "mass must be a file of matrices alone, got '.*body.npz'; a file with all",
+            "mass must be a file of matrices alone, got '.*body.npz'; give a file with all",
         ),
         ({"path": 3}, "path must be a str or PathLike, got 3"),
         ({"mass": MASS, "stiffness": STIFFNESS}, "mass must be a str or PathLike, got a ndarray"),

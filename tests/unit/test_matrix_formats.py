@@ -208,7 +208,7 @@ BAD_DECKS = {
     "twice.inp": ("*NODE\n1, 0\n1, 1\n", "nodes must have different numbers"),
     "made.inp": ("*NODE\n1, 0\n9, 1\n*NGEN\n1, 9\n", "line 4 must be of nodes that are all written out here, got"),
     "other.bdf": ("GRID,1,3,0.,0.,0.\n", "line 1 must be a GRID in the basic coordinate system, got 'GRID,1,3,0"),
-    "cut.bdf": ("GRID*                  1\n", "line 2 must be the rest of the card, the file ends before"),
+    "cut.bdf": ("GRID*                  1\n", "line 2 must be the rest of the card, but the file ends before it"),
     "far.inp": ("*NODE\n1, 0\n2, 1e999\n", "nodes must have finite coordinates"),
 }
 
@@ -243,16 +243,19 @@ OF_CALCULIX = {
     "row zero": ({"job.sti": "0 1 1.0\n"}, "job.sti': rows and columns must be numbered from 1, got 0"),
     "both triangles": (
         {"job.sti": STI + "2 1 1.0\n"},
-        "job.sti': it must hold one triangle, as CalculiX writes it, it",
+        "job.sti': it must hold one triangle, as CalculiX writes it, but",
     ),
     "large": ({"job.sti": "300001 300001 1.0\n"}, "stiffness must have at most 300000 degrees of freedom, got 300001"),
     "fewer rows": (
         {"job.dof": formats.dof(LABELS[:-1])},
-        "job.dof': it must name 6 rows, as many as mass has, it names 5",
+        "job.dof': it must name 6 rows, as many as mass has, but names 5",
     ),
-    "cyclic": ({"job.dof": formats.dof(LABELS[:3])}, "it names 3: a model of cyclic symmetry is not read"),
+    "cyclic": ({"job.dof": formats.dof(LABELS[:3])}, "but names 3: a model of cyclic symmetry is not read"),
     "no label": ({"job.dof": "30.1\n7\n"}, "job.dof': line 2 must be 'node.direction' or, first, 'Matrix Eqn"),
-    "twice": ({"job.dof": formats.dof(LABELS[:5] + LABELS[:1])}, "another degree of freedom, node 30 has 1 twice"),
+    "twice": (
+        {"job.dof": formats.dof(LABELS[:5] + LABELS[:1])},
+        "a different degree of freedom, but node 30 has 1 twice",
+    ),
     "empty labels": ({"job.dof": ""}, "job.dof': the file is empty"),
     "no label at all": ({"job.dof": "\n"}, "job.dof': it names no row"),
 }
@@ -274,18 +277,21 @@ CARDS = formats.dmig(NAMED, LABELS, "free")
 CHAIN = {name: NAMED[name] for name in ("KAAX", "MAAX")}
 OF_CARDS = {
     "complex": (formats.dmig(NAMED, LABELS, kind=4), "mass must be real, got complex numbers in MAAX"),
-    "rectangular": (formats.dmig(NAMED, LABELS, form=9), "it must hold a matrix whose name begins with M for mass, it"),
+    "rectangular": (
+        formats.dmig(NAMED, LABELS, form=9),
+        "it must hold a matrix whose name begins with M for mass, but",
+    ),
     "no stiffness": (
         formats.dmig({"MAAX": MASS * np.eye(2)}, LABELS[:2]),
-        "begins with K for stiffness, it holds MAAX",
+        "begins with K for stiffness, but holds MAAX",
     ),
     "two": (
         formats.dmig(CHAIN | {"MGG": np.eye(6)}, LABELS),
-        "must hold one matrix whose name begins with M for mass, it",
+        "must hold one matrix whose name begins with M for mass, but",
     ),
     "one triangle": (
         formats.dmig({name: np.triu(part) for name, part in CHAIN.items()}, LABELS, form=1),
-        "it must hold both triangles, as the form of KAAX is square, it holds one of each pair of entries only",
+        "it must hold both triangles, as the form of KAAX is square, but holds one of each pair of entries only",
     ),
     "imaginary": (
         CARDS.replace("12,1,4.0000000000000000D+04,", "12,1,4.0D+04,1.0"),
@@ -327,7 +333,7 @@ OF_OUTPUT4 = {
     ),
     "row": (
         text4().replace(b"       3       2       3", b"       3       5       3", 1),
-        "KAAX has 6 rows, a column has 3",
+        "KAAX has 6 rows, but a column has 3",
     ),
     "cut": (text4()[:300], "the file ends before"),
     "cut record": (text4(order="<")[:200], "it ends within a record"),
@@ -337,16 +343,16 @@ OF_OUTPUT4 = {
     ),
     "64 bits": (
         formats._record("<", bytes(48)),
-        "it has integers of 64 bits, write it with those of 32 bits or as text",
+        "it has 64-bit integers; write it with 32-bit integers or as text",
     ),
     "string": (
         text4(strings="short").replace(b"  327681", b"  327686", 1),
-        "KAAX has 6 rows, a column has 2 numbers from row 6",
+        "KAAX has 6 rows, but a column has 2 numbers from row 6",
     ),
     "complex": (text4().replace(b"6       2MAAX", b"6       4MAAX"), "mass must be real, got complex numbers in MAAX"),
     "one triangle": (
         formats.output4({name: np.tril(part) for name, part in CHAIN.items()}, form=1),
-        "it must hold both triangles, as the form of KAAX is square, it holds the lower triangle only",
+        "it must hold both triangles, as the form of KAAX is square, but holds the lower triangle only",
     ),
 }
 
@@ -375,11 +381,11 @@ OF_ANSYS = {
     ),
     "triangle": (
         {"stiffness.matrix": formats.harwell_boeing(np.tril(STIFFNESS_OF_CHAIN), "RUA")},
-        "it must hold both triangles, as its header says unsymmetric, it holds the lower triangle only",
+        "it must hold both triangles, as its header declares it unsymmetric, but holds the lower triangle only",
     ),
     "both": (
         {"stiffness.matrix": RUA.replace("RUA", "RSA")},
-        "it must hold one triangle, as its header says symmetric, it holds entries of both",
+        "it must hold one triangle, as its header declares it symmetric, but holds entries of both",
     ),
     "unknown": (
         {"stiffness.mapping": formats.mapping(LABELS).replace("UX", "TEMP")},
@@ -387,7 +393,7 @@ OF_ANSYS = {
     ),
     "rows": (
         {"stiffness.mapping": formats.mapping(LABELS[:4])},
-        "it must name 6 rows, as many as stiffness has, it names 4",
+        "it must name 6 rows, as many as stiffness has, but names 4",
     ),
     "order": (
         {"stiffness.mapping": formats.mapping(LABELS).replace(" 2   ", " 3   ", 1)},
@@ -430,7 +436,7 @@ def test_mismatched_companion_files_are_refused(tmp_path):
     )
     (tmp_path / "job.dof").unlink()
     message = refused({"path": tmp_path / "job.sti"}, {"end": (5, None)}, mesh=tmp_path / "deck.inp")
-    assert message.startswith("mesh must be left out where files do not say which nodes their rows are")
+    assert message.startswith("mesh must be left out where files do not name the nodes of their rows")
 
 
 POINTS = {

@@ -621,7 +621,7 @@ BAD_SOLIDS = {
     "tonnes and millimetres": (
         {"materials": {"young": 2.1e11, "density": 7.8e-9}},
         "bodies.a.materials must carry waves of at most 30 km/s, got 5.189e+06 km/s from young=2.1e+11 and "
-        "density=7.8e-09: tonnes and millimetres? Pa and kg/m³ are meant",
+        "density=7.8e-09: give Pa and kg/m³, not tonnes and millimetres",
     ),
     "an unknown group": ({"materials": {"steel": METAL}}, "bodies.a.materials must be one of none, got 'steel'"),
     "a point beside": ({"points": {"p": [1, 2, 3]}}, "bodies.a.points.p must be within "),
@@ -647,7 +647,7 @@ BAD_SOLIDS = {
     ),
     "radii that fall": (
         {"mesh": MESHES["sector"][0] | {"radii": [0.2, 0.1]}},
-        "bodies.a.mesh.radii must rise, got (0.2, 0.1)",
+        "bodies.a.mesh.radii must increase, got (0.2, 0.1)",
     ),
     "nothing free": (
         {"fixed": ["left", "right", "bottom", "top", "back", "front"]},
@@ -701,7 +701,7 @@ def test_entries_of_lists_are_keys():
     assert pin.mesh == st.SolidMesh.block((0.01, 0.14, 0.01), (2, 14, 2)).quadratic()
     assert case.system.contacts[2].track == disc.at((0.1621, math.radians(-94.0), 0.0))
     assert disc.residual_at[2] == (0.1621, 0.0)
-    with pytest.raises(st.ScenarioError, match=r"key must be one of the scenario's, got 'lengths\.3'"):
+    with pytest.raises(st.ScenarioError, match=r"key must be a key of the scenario, got 'lengths\.3'"):
         st.load_scenario("pin-on-disc", {"lengths.3": "140 mm"})
 
 

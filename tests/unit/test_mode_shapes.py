@@ -124,7 +124,7 @@ def test_modes_that_grow_come_first():
         (BEAM, {"numbers": []}, "numbers must be a list of numbers of modes"),
         (BEAM, {"numbers": "all"}, "numbers must be a list of numbers of modes"),
         (BEAM, {"numbers": [0] * 25}, "numbers must be at most 24 modes, got 25"),
-        (BEAM, {"theory": 1}, "theory must go with a System"),
+        (BEAM, {"theory": 1}, "theory must be used with a System"),
     ],
 )
 def test_bad_arguments_are_refused(what, options, message):

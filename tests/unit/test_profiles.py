@@ -210,7 +210,7 @@ def body(**changes):
     ("make", "words"),
     [
         (rectangles(((-0.1, 0.1), (0, 1))), r"r of 'a' must be 0 or above, got -0.1"),
-        (rectangles(((0.1, 0.1), (0, 1))), "r of 'a' must rise"),
+        (rectangles(((0.1, 0.1), (0, 1))), "r of 'a' must increase"),
         (rectangles(((0, 1), (0, 1)), ((0.5, 2), (0.5, 2))), "rectangles must not overlap, got 'a' and 'a'"),
         (rectangles(((0, 1), (0, 1)), ((2, 3), (0, 1))), "rectangles must be in one piece"),
         (rectangles(((0, 1), (0, 1)), ((1, 2), (1, 2))), "rectangles must be in one piece"),
@@ -221,7 +221,7 @@ def body(**changes):
         (lambda: replace(BODY, profile=st.RectangleProfile(BOXES, size=1e-6)), "size must leave at most 100000 cells"),
         (line((0.1, 0.0)), "points must be two or more, got 1"),
         (line((0.1, 0.0), (0.1, 0.0)), r"points\[1\] must differ"),
-        (line((0.1, 0.0), (0.2, 0.0), (0.1, 0.0)), "points must not turn back"),
+        (line((0.1, 0.0), (0.2, 0.0), (0.1, 0.0)), "points must not double back"),
         (line((0.001, 0.0), (0.001, 1.0)), "not cross the axis: r >= 0, got r = -0.004 m"),
         (line((0.0, 0.0), (0.3, 0.3), (0.3, 0.0), (0.0, 0.3)), "must not cross or touch itself"),
         (line((0.1, 0.0), (0.104, 0.0), (0.104, 0.004), thickness=0.02), "must not fold back on itself"),
@@ -283,7 +283,7 @@ def test_nothing_but_numbers_is_taken_for_a_mesh():
 
 def test_units_of_finite_element_programs_raise_doubts():
     """Millimetres, tonnes and MPa: right frequencies in millimetres, wrong ones in metres."""
-    tonnes = "did you mean t/mm3, as finite-element programs have it?"
+    tonnes = "did you mean t/mm3, as in finite-element programs?"
     odd = replace(BODY, material={"disc": IRON, "hat": st.Material(2.1e11, 7.8e-9)})
     assert list(doubts_of("disc", odd)) == [f"disc, hat: density of 7.8e-09 kg/m3; {tonnes}"]
     odd = replace(BODY, material=st.Material(7e4, 2.7e-9))

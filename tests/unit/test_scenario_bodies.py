@@ -58,7 +58,7 @@ def test_a_ground_of_an_accelerogram_and_back_again(tmp_path):
     assert len(found) == 1
     assert found[0].startswith("contacts.0.track.normal_acceleration must be a number in m/s2, got '2 m/s'")
     (found,) = problems(SHAKEN.replace('"10 ms", "10 ms"', '"10 ms", "9 ms"'), tmp_path)
-    assert found.startswith("contacts.0.track.history.time must rise, got (0.0, 0.01, 0.009)")
+    assert found.startswith("contacts.0.track.history.time must increase, got (0.0, 0.01, 0.009)")
 
 
 def test_files_are_found_from_the_file_that_names_them(tmp_path):
@@ -270,9 +270,9 @@ def test_entries_of_a_list_are_keys_where_it_is_short(tmp_path):
     path.write_text(SHAKEN, encoding="utf-8")
     history = st.load_scenario(path, {"track.history.value.1": 0.5}).system.contact.track.history
     assert history.value == (0.0, 0.5, 0.0)
-    with pytest.raises(st.ScenarioError, match=r"must mean one place, got 'value\.1'"):
+    with pytest.raises(st.ScenarioError, match=r"must name one place, got 'value\.1'"):
         st.load_scenario(path, {"value.1": 0.5})
     times = ", ".join(str(0.01 * k) for k in range(65))
     path.write_text(SHAKEN.replace("time = [0, 0.01, 0.02], value = [0, 1, 0]", f"time = [{times}], value = [{times}]"))
-    with pytest.raises(st.ScenarioError, match="key must be one of the scenario's"):
+    with pytest.raises(st.ScenarioError, match="key must be a key of the scenario"):
         st.load_scenario(path, {"track.normal_history.value.1": 0.5})

@@ -55,7 +55,7 @@ duration = 0.01
 )
 def test_the_name_of_a_contact_leads_to_its_keys(key, nearest, tmp_path):
     (found,) = problems(BELT, tmp_path, {key: 1.0})
-    assert found == f"key must be one of the scenario's, got {key!r}; did you mean {nearest!r}?"
+    assert found == f"key must be a key of the scenario, got {key!r}; did you mean {nearest!r}?"
 
 
 @pytest.mark.parametrize(
@@ -130,7 +130,7 @@ def test_every_problem_of_a_file_is_reported(tmp_path):
         ('base = "squeal"\n[[drives]]\nkind = "force"\npoint = 9', "drives.0.point must be from 0 to "),
         (
             'base = "squeal"\n[[drives]]\nkind = "force"\nhistory = {kind = "sampled", time = [1, 0], value = [1, 1]}',
-            "drives.0.history.time must rise",
+            "drives.0.history.time must increase",
         ),
         (
             'base = "weak-pressure"\n[slider]\nroot_support = "pinned"',

@@ -469,7 +469,9 @@ def test_a_start_whose_state_is_laid_out_otherwise_is_refused():
 def test_a_start_that_is_cut_is_refused(kept):
     """It holds the state at its former end."""
     record = st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3)
-    message = r"^start must be a record up to its final state, at 0\.001 s, got a last time of (none|0\.000\d+ s): "
+    message = (
+        r"^start must be a complete record, up to its final state at 0\.001 s, got a last time of (none|0\.000\d+ s): "
+    )
     with pytest.raises(ValueError, match=message) as caught:
         st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3, start=record.isel(time=kept))
     assert "\n" not in str(caught.value)

@@ -169,7 +169,7 @@ def test_bad_shapes_are_refused():
     refused(lambda: st.SolidMesh.block((1, 1), (1, 1, 1)), "lengths must be three numbers")
     refused(lambda: st.SolidMesh.block((1, 1, -1), (1, 1, 1)), "lengths[2]")
     refused(lambda: st.SolidMesh.block((1, 1, 1), (1, 1, 0)), "divisions[2]")
-    refused(lambda: st.SolidMesh.sector((2, 1), (0, 1), 1, (1, 1, 1)), "radii must rise")
+    refused(lambda: st.SolidMesh.sector((2, 1), (0, 1), 1, (1, 1, 1)), "radii must increase")
     refused(lambda: st.SolidMesh.sector((1, 2), (0, 7), 1, (1, 1, 1)), "angles must increase, by at most 2 pi in all")
     refused(lambda: st.SolidMesh.sector((1, 2), (0, 1), 1, (1, 1, 1), axis="r"), "axis")
     refused(lambda: st.SolidMesh.extrusion([[0, 0], [1, 0], [1, 1]], [[0, 1, 2]], 1, 1), "(elements, 4)")

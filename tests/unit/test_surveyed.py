@@ -25,7 +25,7 @@ def modes(*frequencies):
 
 
 def test_modes_keep_their_names_from_point_to_point():
-    """One appears later, one pauses, and all are named by rising frequency."""
+    """One appears later, one pauses, and all are named by increasing frequency."""
     before = [[], [0], [1], [2], [3]]
     names = followed([modes(*one) for one in FREQUENCIES], before)
     assert names == [[], [1], [1, 2], [0, 2], [1, 2]]
@@ -121,7 +121,7 @@ def test_a_map_has_tones_by_colour_and_what_is_quiet_beside_them():
     quiet = ["stable (1)", "no steady sliding (1)", "unstable, not reached (1)", "failed (1)"]
     assert words == [
         *quiet,
-        "n modes live on",
+        "n modes live",
         "linear theory: bound of growth",
         "linear theory: bound of steady sliding",
     ]
@@ -152,8 +152,11 @@ def test_the_command_line_prints_the_fate_of_each_mode(stridula, tmp_path):
     ("words", "message"),
     [
         (["-o", "a.nc"], "points must be given by --vary or by --points, got neither"),
-        (["--vary", "friction=0.3,0.9", "-o", "a.nc", "--plot", "a.png"], "--plot must go with a grid of two keys"),
-        (["--vary", "friction=0.3,0.9", "-o", "a.nc", "--table", "a.nc"], "--table must be another file than --out"),
+        (
+            ["--vary", "friction=0.3,0.9", "-o", "a.nc", "--plot", "a.png"],
+            "--plot must be used with a grid of two keys",
+        ),
+        (["--vary", "friction=0.3,0.9", "-o", "a.nc", "--table", "a.nc"], "--table must differ from --out"),
         (["--vary", "friction=0.3,0.9", "-o", "a.nc", "--table", "a.txt"], "--table must end in .csv, got 'a.txt'"),
         (["--vary", "friction=0.3,0.9", "-o", "a.nc", "--velocity", "x"], "--velocity must be a number in m/s"),
         (["--vary", "friction=0.3,0.9", "-o", "a.nc", "--longest", "0"], "longest must be above 0"),

@@ -387,7 +387,7 @@ def test_the_matrices_of_reduced_bodies_are_kept_with_the_sweep(tmp_path):
 
 BAD = [
     ({"points": st.Grid({"frction": [1]})}, "did you mean 'friction'?"),
-    ({"points": st.Grid({"length": [1]})}, "key must mean one place, got 'length', which fits"),
+    ({"points": st.Grid({"length": [1]})}, "key must name one place, got 'length', which fits"),
     ({"points": st.Grid({"friction": [1], "contact.friction.coefficient": [1]})}, "which both mean contact.friction"),
     ({"points": st.Grid({"friction": [1]}), "overrides": {"coefficient": 1}}, "key must be set or varied, got both"),
     ({"points": st.Grid({"angle": ["10 deg", "10 N"]})}, "slider.angle must be a number in rad or deg, got '10 N'"),

@@ -145,7 +145,7 @@ def test_only_chooses_by_name_or_title(stridula, tmp_path):
     assert stridula([GOOD, SHORT], "--only", "MET")[0] == 0
     code, out, err = stridula([GOOD, SHORT], "--only", "nothing", "--out", "elsewhere")
     assert (code, out) == (2, "")
-    assert err == "stridula: only must be a word of one of fine, short, got 'nothing'\n"
+    assert err == "stridula: only must be part of the name or title of a case: fine, short, got 'nothing'\n"
     assert not (tmp_path / "elsewhere").exists()
 
 

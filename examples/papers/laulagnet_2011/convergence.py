@@ -1,4 +1,4 @@
-"""Convergence of the paper's measures: elements doubled, cut-off doubled, step halved, each alone.
+"""Convergence of the paper's measures: elements doubled, cutoff doubled, step halved, each alone.
 
 Every measure is averaged over an ensemble of starts whose gap is perturbed by parts in a million. A refinement
 passes where the mean moves by less than 3 % (frequencies, durations, ratios) or 0.03 (shares), or stays within the
@@ -27,7 +27,7 @@ def refinements() -> dict[str, dict[str, float]]:
     return {
         "shipped": {"simulation.step": step},
         "elements doubled": {"simulation.step": step, "slider.elements": 2 * slider.elements},
-        "cut-off doubled": {"simulation.step": step, "cutoff": 2.0 * slider.cutoff},
+        "cutoff doubled": {"simulation.step": step, "cutoff": 2.0 * slider.cutoff},
         "step halved": {"simulation.step": step / 2.0},
     }
 

@@ -11,7 +11,7 @@ corrections remain:
   poles, and seven taps approximate it: least squares of the relative error up to 5/12 of the sample rate.
 
 For modes and sound below a fifth of the sample rate a response is then accurate to 0.1 % without damping and to 0.05 %
-of it per percent of critical damping; below 5/12 of it to 0.3 % and 0.15 %. Overdamped modes have two real poles
+per percent of critical damping; below 5/12 of it to 0.3 % and 0.15 %. Overdamped modes have two real poles
 instead of a pair. A force held constant over each interval would be late by half of it, and lowered by the mean once
 more. Frequencies of the force above half the sample rate are aliased, less the attenuation of the mean, as in any
 record of means.
@@ -127,7 +127,7 @@ class DrivenModes:
     begins : float or None
         Begin of the sample interval in which a force first acts [s from the start], None if none does.
     notes : list of str
-        Notes on what is missing.
+        Notes on missing parts.
     """
 
     words = "driven again"
@@ -138,7 +138,7 @@ class DrivenModes:
         self.first = first_time(pressing)
         presses = np.flatnonzero(pressing.force.any(axis=0))
         self.begins = float(presses[0]) * pressing.interval if presses.size else None
-        continues = "the record continues another one; vibration left from that one is not included"
+        continues = "the record continues another one; vibration left from the earlier record is not included"
         self.notes = [continues] if pressing.start > 0.5 * pressing.interval else []
 
     def carried(self, angular_frequency: Array) -> Array:

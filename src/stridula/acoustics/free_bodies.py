@@ -194,17 +194,17 @@ def ends_of(heard: dict[str, Modes], moved: Moved | None) -> list[str]:
     notes = []
     if moved is not None and moved.left_out.any():
         left_out = int(moved.left_out.sum())
-        notes.append(f"{left_out} modes above what the record's sample rate carries are left out")
+        notes.append(f"{left_out} modes above the limit of the record's sample rate are left out")
     highest = {name: float(modes.frequency[~modes.massless].max()) for name, modes in heard.items()}
     words = [f"{name} {frequency:.4g} Hz" for name, frequency in highest.items()]
     return [*notes, f"modes end at: {', '.join(words)}"]
 
 
 def lacks(system: System, heard: Sequence[Any], silent: Sequence[str], motions: Iterable[Moved]) -> list[str]:
-    """Return notes on what is left out."""
+    """Return notes on parts that are left out."""
     notes = []
     if silent:
-        notes.append(f"without a surface and not heard: {listed(silent)}")
+        notes.append(f"not included, without a surface: {listed(silent)}")
     moved = next((one for one in motions if not one.is_recorded), None)
     notes += ends_of({system.body_name(body): body.modes(system.is_held(body)) for body in heard}, moved)
     imposed = system.imposed_velocity
@@ -213,7 +213,7 @@ def lacks(system: System, heard: Sequence[Any], silent: Sequence[str], motions: 
     if moved is None:
         return notes
     if moved.start > 0.5 * moved.interval:
-        notes.append("the record continues another one; vibration left from that one is not included")
+        notes.append("the record continues another one; vibration left from the earlier record is not included")
     elif started := [str(drive) for drive in system.drives if drive.starts_motion]:
         notes.append(f"vibration at the start is not included: {listed(started)}")
     return notes

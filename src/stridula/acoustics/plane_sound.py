@@ -94,7 +94,7 @@ def plane_sound(
     attributes["bodies"] = [system.body_name(body) for body in heard]
     attributes |= air.attributes
     if silent and not slim:
-        attributes["notes"] = "; ".join(filter(None, [attributes["notes"], f"not heard: {listed(silent)}"]))
+        attributes["notes"] = "; ".join(filter(None, [attributes["notes"], f"not included: {listed(silent)}"]))
     return pressure, parts[0][1], places, attributes
 
 

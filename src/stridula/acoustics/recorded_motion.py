@@ -54,7 +54,7 @@ class RecordedModes:
     begins : float or None
         Time at which the track first moves [s from the start], None if it does not.
     notes : list of str
-        Notes on what is missing.
+        Notes on missing parts.
     """
 
     words = "recorded"

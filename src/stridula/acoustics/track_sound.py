@@ -148,5 +148,5 @@ def _notes(
     elif (arrival > duration).any():
         notes.append(f"{silence[0]}: the sound does not arrive within the record")
     if kept < modes:
-        notes.append(f"{modes - kept} modes above what the record's sample rate carries are left out")
+        notes.append(f"{modes - kept} modes above the limit of the record's sample rate are left out")
     return [*notes, *motion.notes]

@@ -35,4 +35,8 @@ def travel_of(run: xr.Dataset, system: System, body: Any) -> tuple[Array, float]
 
 def travel_note(name: str, reach: float) -> list[str]:
     """Return notes on a body that slides."""
-    return [f"{name}: it slides over {reach:.3g} m and is heard from the middle of its way"] if reach > FAR else []
+    return (
+        [f"{name}: it slides over {reach:.3g} m; its sound is computed at the middle of its path"]
+        if reach > FAR
+        else []
+    )

@@ -142,7 +142,7 @@ class _Motion:
 
     @property
     def frequencies(self) -> Array:
-        """Frequencies at which peaks and what lies between is seen [Hz]."""
+        """Frequencies that resolve peaks and the valleys between them [Hz]."""
         natural = np.concatenate([one.frequency[~one.massless] for one in self.modes])
         damping = np.concatenate([one.damping[~one.massless] for one in self.modes])
         natural, damping = natural[natural > 0.0], damping[natural > 0.0]

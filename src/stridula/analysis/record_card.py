@@ -29,7 +29,7 @@ from .spectra import dominant_frequency
 ENDINGS = {
     "off the track": "the tip ran off the end of its track",
     "not finite": "failed: the state is no longer finite",
-    "contact unsolved": "failed: the contact forces were not found",
+    "contact unsolved": "failed: the contact forces did not converge",
     "energy created": "failed: energy was created without a source",
     "interrupted": "interrupted",
 }
@@ -37,7 +37,7 @@ ENDINGS = {
 SQUEAL = "squeal"
 CYCLES = (SQUEAL, "stick-slip")
 # The way to the level of the sound, whose computation takes too long for a card.
-ASK_FOR_LEVEL = 'not computed: st.equivalent_level(st.radiate(run, system), "A") is LAeq at 1 m'
+ASK_FOR_LEVEL = 'not computed: st.equivalent_level(st.radiate(run, system), "A") gives LAeq at 1 m'
 # Relative changes of a force below this are rounding errors.
 STEADY = 1e-9
 
@@ -86,8 +86,8 @@ def card(run: xr.Dataset, system: System | None = None) -> RecordCard:
     Returns
     -------
     RecordCard
-        Whether it squeals, at what pitch, and how the level is found; then the forces, the shares of the time in each
-        status, the balance of energy, and what was computed. In notebooks the last line of a cell shows it as a table.
+        The regime, its pitch, and the level or the way to compute it; then the forces, the shares of the time in each
+        status, the balance of energy, and the computation. In notebooks the last line of a cell shows it as a table.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def facts_of(record: xr.Dataset, system: System | None = None, level: str = ASK_
 
 
 def _heard(record: xr.Dataset) -> dict[str, str]:
-    """Return whether a run squeals, and at what pitch."""
+    """Return the regime of a run and its pitch."""
     found = regime_of(record)
     regime, interval = str(found["regime"]), record.attrs["sample_interval"]
     answer = "yes" if regime == SQUEAL else f"no, {regime}"

@@ -62,7 +62,7 @@ def sliding_stability(
     Returns
     -------
     xarray.Dataset
-        Over ``mode``, by rising frequency: ``frequency`` [Hz], ``growth_rate`` [1/s], ``damping_ratio`` [1], whether
+        Over ``mode``, by increasing frequency: ``frequency`` [Hz], ``growth_rate`` [1/s], ``damping_ratio`` [1],
         ``unstable``, ``energy_share`` of each ``body`` in the kinetic energy [1], and ``mode_shape``, real and
         imaginary ``part`` of the modal displacements. For each contact its ``status``, forces [N], ``slip_velocity``
         [m/s], NaN if a force accelerates it and none is given, and ``slip_acceleration`` [m/s²].

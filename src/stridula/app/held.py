@@ -99,4 +99,4 @@ def _playable(scene: Scene) -> Playable:
     try:
         return playable(scene.case, scene.text, scene.overrides)
     except RecursionError:
-        raise ScenarioError(["scenario must not be nested so deeply"]) from None
+        raise ScenarioError(["scenario must be nested less deeply"]) from None

@@ -161,7 +161,7 @@ class Instrument:
         return _Moment({name: getattr(self, name) for name in PLAYING}, self.source.copy(), self.live.moment)
 
     def _go_back(self, kept: int | None) -> None:
-        """Return to so many played samples, or to the first known moment: to the last one before, and on from there."""
+        """Return to a number of played samples, from the last moment before it, or else to the first known moment."""
         if kept is None or kept >= self.played_samples:
             return
         first, *others = self._moments

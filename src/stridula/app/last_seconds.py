@@ -264,7 +264,7 @@ class LastSeconds:
 
     def _check(self) -> None:
         if not self._parts:
-            raise ArgumentError("something", "have been played before it can be saved", got="nothing yet")
+            raise ArgumentError("page", "have played something before it can save", got="nothing yet")
 
 
 def _labels(played: Playable) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...]]:

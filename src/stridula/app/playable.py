@@ -125,7 +125,7 @@ def playable(case: str, text: str | None, overrides: Mapping[str, Any]) -> Playa
         overrides = expanded(overrides, before)
     unknown = [key for key in overrides if before is None and key not in KEYS]
     if unknown:
-        raise ScenarioError([f"key must be one of the page's, got {unknown[0]!r}"])
+        raise ScenarioError([f"key must be a key of the page, got {unknown[0]!r}"])
     # Setting a kind clears its table, so that the other keys come after it.
     kinds_first = sorted(overrides.items(), key=lambda item: item[0].rpartition(".")[2] not in TAGS)
     changed, problems = overridden(tables, dict(kinds_first))

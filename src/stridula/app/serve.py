@@ -55,9 +55,7 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
         If the host is not a loopback address and `is_open` is false, or the port is not free.
     """
     if not (is_open or is_loopback(host)):
-        raise ArgumentError(
-            "host", "be this machine's own, such as 127.0.0.1, unless --open lets other machines in", host
-        )
+        raise ArgumentError("host", "be an address of this machine, such as 127.0.0.1, unless --open is given", host)
     listening = _bound(host, port)
     use_one_thread()
     _get_ready()

@@ -121,7 +121,7 @@ def _named_rightly(app: ASGIApp, is_open: bool) -> ASGIApp:
 
 async def _refused(scope: Scope, receive: Receive, send: Send) -> None:
     if scope["type"] == "http":
-        await PlainTextResponse("host must be this machine's", 421, HEADERS)(scope, receive, send)
+        await PlainTextResponse("host must be an address of this machine", 421, HEADERS)(scope, receive, send)
         return
     await receive()
     await send({"type": "websocket.close", "code": FROM_ELSEWHERE})

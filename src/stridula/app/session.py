@@ -336,9 +336,9 @@ class Session:
         for side in ("x", "y"):
             axis = getattr(message, side)
             if axis.key not in known or not axis.low < axis.high:
-                raise ArgumentError(side, "be a number of the page with low below high", axis.key)
+                raise ArgumentError(side, "be a key of a number on the page, with low below high", axis.key)
         if message.x.key == message.y.key:
-            raise ArgumentError("y", "be another number than x", message.y.key, got=f"{message.y.key!r} for both")
+            raise ArgumentError("y", "be another key than x", message.y.key, got=f"{message.y.key!r} for both")
         self._do("map", self._rows(played, message))
 
     async def _rows(self, played: Playable, wanted: Map) -> None:
@@ -399,7 +399,7 @@ def _begun(played: Playable, source: str) -> tuple[Instrument, float | None]:
 
 
 def _changed(instrument: Instrument, played: Playable, revision: int, kept: int | None) -> tuple[bool, float | None]:
-    """Change what an instrument plays; return whether the motion continues, and its speed if not, as in `_begun`."""
+    """Change the scenario of an instrument; return whether the motion continues, and the speed if not (`_begun`)."""
     goes_on = instrument.change(played, revision, kept)
     speed = None if goes_on or played.is_fast else instrument.keep_up()
     _ = instrument.drawing.described

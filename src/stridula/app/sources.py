@@ -164,7 +164,7 @@ class OfContacts:
         return np.asarray(chunk.contacts[self.variable].sum(axis=0))
 
     def copy(self) -> OfContacts:
-        """Return itself, since it has no state."""
+        """Return this source itself, which has no state."""
         return self
 
 
@@ -188,7 +188,7 @@ class OfProbe:
         return chunk.probes[:, self.number]
 
     def copy(self) -> OfProbe:
-        """Return itself, since it has no state."""
+        """Return this source itself, which has no state."""
         return self
 
 

@@ -1,4 +1,4 @@
-"""Six stops of a tour for teaching, each with a setting and an explanation of what to see and hear."""
+"""Six stops of a tour for teaching, each with a setting and an explanation of the things to see and hear."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class TourStop:
     Attributes
     ----------
     title, words : str
-        Title, and explanation of what to see and hear.
+        Title, and explanation of the things to see and hear.
     look : str
         Element of the page to look at.
     case : str
@@ -49,7 +49,7 @@ STOPS = (
     ),
     TourStop(
         "Slip",
-        "Pulled faster, pressed less and with half the friction, the tip slides all the time: the ribbon is "
+        "With a faster pull, a smaller load and half the friction, the tip slides all the time: the ribbon is "
         "yellow. The force settles to a steady value and the sound dies away, since nothing feeds it.",
         "timeline",
         "stable-sliding",
@@ -73,16 +73,16 @@ STOPS = (
     ),
     TourStop(
         "Judder",
-        "Pushed along its own axis at a friction of 1.1, the tip hammers on the track, some 600 landings a "
-        "second, and never settles. Its path in the phase portrait never closes, and you hear a roar without a "
-        "pitch.",
+        "The slider is pushed along its own axis at a friction of 1.1: the tip hammers on the track, with some 600 "
+        "landings a second, and never settles. Its path in the phase portrait never closes, and you hear a roar "
+        "without a pitch.",
         "phase",
         "judder",
     ),
     TourStop(
         "Pressure",
         "Setting A presses with 2 N: the tip flies and lands a few hundred times a second. Setting B presses with "
-        "100 N: it has no time to fly, sticks, and the remaining sound is the fast vibration of beams in contact, "
+        "100 N: the tip has no time to fly and sticks. The remaining sound is the fast vibration of beams in contact, "
         "above 800 Hz. The buttons A and B, or the key b, switch between them.",
         "spectrogram",
         "strong-pressure",

@@ -105,7 +105,7 @@ class AxisymmetricBody(HasCard):
     Round the axis its displacement varies as ``u_r = U cos n theta``, ``u_theta = V sin n theta``,
     ``u_z = W cos n theta``, or as these turned by a quarter of a wave, with U, V and W on the profile in quadratic
     elements of three-dimensional elasticity. Modes of order n above 0 come in pairs of the same frequency. Modes are
-    sorted by rising frequency, the two of a pair one after the other; rigid motions, of frequency zero, come first.
+    sorted by increasing frequency, the two of a pair one after the other; rigid motions, of frequency zero, come first.
 
     Parameters
     ----------
@@ -554,7 +554,7 @@ def _turning(body: AxisymmetricBody, numbers: Array, angular: Array, lags: Array
     order = numbers[first, 0].astype(float)
     lag = np.where(np.isinf(angular[first]), 0.0, lags[first])
     if (np.abs(order - lag)[angular[first] == 0.0] > STRAIGHT).any():
-        raise ArgumentError("turning", "be 0 unless something keeps the body from tilting", body.turning)
+        raise ArgumentError("turning", "be 0 for a body that is free to tilt", body.turning)
     pairs = np.stack([first, first + 1], axis=1).tolist()
     return Turning(body.turning, pairs, order.tolist(), (order - lag).tolist(), body.turning_history)
 

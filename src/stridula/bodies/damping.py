@@ -109,7 +109,7 @@ class SampledDamping:
     Raises
     ------
     ValueError
-        If frequencies do not rise, an argument is out of its range, or the numbers of entries differ.
+        If frequencies do not increase, an argument is out of its range, or the numbers of entries differ.
     """
 
     frequency: Annotated[Sequence[float], Each(Number("Hz", least=0.0))]

@@ -1,4 +1,4 @@
-"""Places along the lines that represent bodies of the plane in drawings."""
+"""Places along the lines that represent bodies in the plane in drawings."""
 
 from __future__ import annotations
 

@@ -97,7 +97,7 @@ def _superlu(matrix: Any, order: Array | None) -> Solve:
         )
     except MemoryError:
         raise ArgumentError(
-            "mesh", "have factors that fit into memory", got=f"{matrix.shape[0]} degrees of freedom"
+            "mesh", "be small enough for its factors to fit into memory", got=f"{matrix.shape[0]} degrees of freedom"
         ) from None
     if order is None:
         return lambda right: np.asarray(factors.solve(right))

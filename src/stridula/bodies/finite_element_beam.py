@@ -62,7 +62,7 @@ class FiniteElementBeam(HasCard):
         Number of finite elements; they are equal, at most 500.
     damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
         Damping ratio of every mode [1], one for each, or a law of frequency; from 0 to 1 (1 excluded), one for each
-        mode kept in the order of rising frequency, without effect on rigid modes.
+        mode kept in the order of increasing frequency, without effect on rigid modes.
     root_support : {"free", "guided", "pinned", "clamped"}, optional
         Support of the root: free, guided (no rotation), pinned or clamped; where it is guided, both translations are
         free.

@@ -71,7 +71,7 @@ def _held_back(mass: Any, pulled: Array) -> Array:
 def _by_number(word: str, value: Any, labels: Array | None, nodes: Nodes | None) -> Any:
     """Return a point given by a node, a place or labels as numbers of degrees of freedom; any other unchanged."""
     if labels is None and nodes is not None:
-        raise ArgumentError("mesh", "be left out where files do not say which nodes their rows are", word)
+        raise ArgumentError("mesh", "be left out where files do not name the nodes of their rows", word)
     if labels is None or (isinstance(value, np.ndarray) and value.ndim > 1):
         return value
     if isinstance(value, Integral) and not isinstance(value, bool):

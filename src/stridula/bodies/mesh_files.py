@@ -76,7 +76,7 @@ def _read(path: str | os.PathLike[str]) -> Any:
             return meshio.read(path)
     except (Exception, SystemExit) as error:
         # meshio exits the program if no reader accepts a file, and its readers raise any exception.
-        words = in_one_line(error) if isinstance(error, Exception) else "no reader takes it"
+        words = in_one_line(error) if isinstance(error, Exception) else "no reader accepts it"
         raise ArgumentError("path", "be a file of a mesh", got=f"{named(path)}: {words}") from error
 
 

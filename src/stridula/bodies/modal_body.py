@@ -126,7 +126,7 @@ class ModalBody(NamedPoints):
         Parameters
         ----------
         body : FiniteElementBeam, ModalBeam, PointMass or ReducedBody
-            A body of the plane, without a damping matrix of its own.
+            A body in the plane, without a damping matrix of its own.
         points : mapping
             Positions on it by the names of the new points, such as ``{"tip": "tip"}`` or ``{"middle": 0.5}``.
         x, y : sequence of float, optional
@@ -144,11 +144,11 @@ class ModalBody(NamedPoints):
             at right angles.
         """
         if not hasattr(body, "trace") or body.is_spatial:
-            raise ArgumentError("body", "be a body of the plane", body)
+            raise ArgumentError("body", "be a body in the plane", body)
         axes = np.array(checked_plane("x and y", (x, y)))
         modes = body.modes()
         if modes.damping_matrix is not None:
-            raise ArgumentError("body", "be without a damping matrix of its own", body, got="one with")
+            raise ArgumentError("body", "have no damping matrix of its own", body, got="one")
         instance("points", points, Mapping)
         named = {one: getattr(body, one).position for one in body.point_names if body.has_positions}
         rows = {one: axes.T @ body.trace(named.get(place, place)) for one, place in points.items()}
@@ -158,7 +158,7 @@ class ModalBody(NamedPoints):
             known: Any = body
             place = numbers("origin", origin)
             if place.shape != (3,) or not hasattr(known, "offset"):
-                raise ArgumentError("origin", "be three numbers, of a beam or a plate", origin)
+                raise ArgumentError("origin", "be three numbers, for a beam or a plate only", origin)
             check_finite("origin", place)
             frame = np.array([*axes, np.cross(*axes)])
             places = {one: place + known.offset(named.get(at, at)) @ frame for one, at in points.items()}
@@ -237,7 +237,7 @@ class ModalBody(NamedPoints):
             choice("velocities", name, self.point_names)
             velocity = numbers(f"velocities[{name!r}]", given)
             if velocity.shape != (3,) or self.turning is None:
-                raise ArgumentError(f"velocities[{name!r}]", "be three numbers, of a body with turning", given)
+                raise ArgumentError(f"velocities[{name!r}]", "be three numbers, for a body with turning only", given)
             check_finite(f"velocities[{name!r}]", velocity)
             velocity.flags.writeable = False
             velocities[name] = velocity
@@ -249,7 +249,7 @@ class ModalBody(NamedPoints):
             choice("circles", name, self.point_names)
             circle = numbers(f"circles[{name!r}]", given)
             if circle.shape != (5,) or self.turning is None or not (circle[0] > 0.0 and circle[2:].any()):
-                words = "be a radius above 0, an abscissa and a direction, five numbers, of a body with turning"
+                words = "be a radius above 0, an abscissa and a direction, five numbers, for a body with turning only"
                 raise ArgumentError(f"circles[{name!r}]", words, given)
             check_finite(f"circles[{name!r}]", circle)
             circle.flags.writeable = False

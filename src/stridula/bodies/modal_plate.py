@@ -63,7 +63,7 @@ class Line:
 
 @dataclass(frozen=True)
 class ModalPlate(InPlane):
-    """A thin rectangular plate in its exact modes, bending modes first, each kind by rising frequency.
+    """A thin rectangular plate in its exact modes, bending modes first, each kind by increasing frequency.
 
     Kirchhoff, simply supported along its edges: ``w = sin(m pi x / length) sin(n pi y / width)`` and
     ``w_mn = pi² ((m / length)² + (n / width)²) sqrt(D / rho h)`` with ``D = E h³ / 12 (1 - nu²)``; modal mass

@@ -15,7 +15,7 @@ class NamedPoints(HasCard):
 
     has_positions: ClassVar[bool] = False
     # Why it has no surface, in words.
-    without_surface: ClassVar[str] = "of which none is known"
+    without_surface: ClassVar[str] = "whose surface is not known"
 
     def at(self: Body, position: str) -> BodyPoint:
         """Return the point of the name `position`."""

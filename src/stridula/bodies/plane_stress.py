@@ -14,7 +14,7 @@ from .sections import Material
 
 @dataclass(frozen=True)
 class PlaneStress:
-    """Modes ``(A sin(kx x) cos(ky y), B cos(kx x) sin(ky y))`` of a sheet of unit mass, by rising frequency.
+    """Modes ``(A sin(kx x) cos(ky y), B cos(kx x) sin(ky y))`` of a sheet of unit mass, by increasing frequency.
 
     Attributes
     ----------

@@ -23,7 +23,7 @@ INNER, OF_RADIUS = 4, 0.6
 
 
 def cells_of(half_waves: float) -> int:
-    """Return into how many cells a length is cut on which so many half-waves stand."""
+    """Return the number of cells into which a length with a number of half-waves is cut."""
     return max(FEWEST_CELLS, CELLS_A_WAVE * int(np.ceil(half_waves)))
 
 
@@ -36,7 +36,7 @@ def beam_mesh(section: Any, length: float, cells: int) -> SolidMesh:
     ValueError
         If the section has no outline.
     """
-    words = "be a Rectangle or a Circle for a beam to have a surface; strings are heard through an st.Bridge"
+    words = "be a Rectangle or a Circle for a beam to have a surface; the sound of strings needs an st.Bridge"
     raise ArgumentError("section", words, section)
 
 

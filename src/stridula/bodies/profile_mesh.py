@@ -152,7 +152,7 @@ def checked_mesh(
         If they cross the axis or each other, are not convex, form several pieces or are too many.
     """
     if len(cells) > MOST_CELLS:
-        raise ArgumentError(name, f"have at most {MOST_CELLS} cells", got=f"{len(cells)}: coarser ones may do")
+        raise ArgumentError(name, f"have at most {MOST_CELLS} cells", got=f"{len(cells)}: try coarser cells")
     nodes, cells = np.array(nodes, dtype=float), np.array(cells, dtype=np.int64)
     extent = float(np.ptp(nodes, axis=0).max())
     margin = SAME_PLACE * extent

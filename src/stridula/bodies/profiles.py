@@ -66,8 +66,8 @@ class RectangleProfile:
     Raises
     ------
     ValueError
-        If a range does not rise, if a rectangle crosses the axis or overlaps another one, or if they are not connected
-        by their sides.
+        If a range does not increase, if a rectangle crosses the axis or overlaps another one, or if they are not
+        connected by their sides.
     """
 
     shape: ClassVar[str] = "rectangles"
@@ -320,9 +320,7 @@ def _across(points: Array) -> Array:
     share = 1.0 + np.sum(before * after, axis=1)
     if share.min() <= SAME_PLACE:
         at = int(np.argmin(share))
-        raise ArgumentError(
-            "points", "not turn back on the way they came", got=f"a turn at {tuple(points[at].tolist())}"
-        )
+        raise ArgumentError("points", "not double back", got=f"a turn at {tuple(points[at].tolist())}")
     across = (before + after) / share[:, None]
     for end in (0, -1):
         if abs(points[end, 0]) <= SAME_PLACE * np.ptp(points, axis=0).max():
@@ -351,7 +349,7 @@ def _rectangles(given: Any) -> tuple[tuple[str, tuple[Range, Range]], ...]:
 def _rising(name: str, values: Any) -> Range:
     low, high = _pair(name, values)
     if low >= high:
-        raise ArgumentError(name, "rise from its first to its second number", values)
+        raise ArgumentError(name, "increase from its first to its second number", values)
     return low, high
 
 

@@ -62,7 +62,7 @@ class ReducedBody(NamedPoints):
         freedom, shape (2, n) or (3, n), or the numbers of two or three degrees of freedom from 0, such as ``(0, 1)``;
         None for a direction in which the point does not move. With z the body is in space.
     damping : float, sequence of float, Rayleigh, RisingDamping, SampledDamping or array_like, optional
-        One damping ratio [1] for every elastic mode, one for each mode kept in the order of rising frequency (without
+        One damping ratio [1] for every elastic mode, one for each mode kept by increasing frequency (without
         effect on rigid modes), a law of their frequency, or a symmetric positive semidefinite matrix C [N s/m], shape
         (n, n). With a cutoff, ``Phi^T C Phi`` of the modes kept is used: their coupling by C to the others is lost.
     translation : array_like, shape (2, n) or (3, n), optional
@@ -83,7 +83,7 @@ class ReducedBody(NamedPoints):
     """
 
     kind: ClassVar[str] = "reduced"
-    without_surface: ClassVar[str] = "whose matrices do not tell where it is"
+    without_surface: ClassVar[str] = "whose matrices do not contain its shape"
     mass: Array
     stiffness: Array
     points: Mapping[str, Any]
@@ -213,7 +213,7 @@ class ReducedBody(NamedPoints):
         if tuple(given_files) not in (FILES[:1], FILES[1:]):
             raise ArgumentError(
                 "path",
-                "be one file with everything, or mass and stiffness must be one file each",
+                "be one file with all matrices, or mass and stiffness must be one file each",
                 path,
                 got=" and ".join(given_files) or "none of them",
             )
@@ -235,7 +235,7 @@ class ReducedBody(NamedPoints):
         held = None if path is None else read_container(path)
         if held is not None:
             for word, file in beside.items():
-                raise ArgumentError(word, "be left out where a file holds everything", os.fspath(file))
+                raise ArgumentError(word, "be left out where a file holds all matrices and points", os.fspath(file))
             known = from_container(held)
             return cls(**{**known, **given, "points": {**known["points"], **added}})
         if path is not None:

@@ -171,7 +171,7 @@ def _tensor(inertia: Any) -> Array:
             "inertia", "be positive definite", inertia, got=f"a principal moment of {moments[0]:.6g} kg m²"
         )
     if moments[2] > (moments[0] + moments[1]) * (1.0 + ROUND_OFF):
-        words = "have no principal moment above the sum of the other two, as no body has"
+        words = "have no principal moment above the sum of the other two, which no body has"
         raise ArgumentError("inertia", words, inertia, got=", ".join(f"{moment:.6g}" for moment in moments) + " kg m²")
     tensor.flags.writeable = False
     return tensor

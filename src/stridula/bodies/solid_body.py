@@ -85,7 +85,7 @@ class SolidBody(NamedPoints):
         Keep the modes up to this frequency [Hz], rigid ones always; all modes if left out. Must be given for more
         than 4000 degrees of freedom.
     damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
-        One damping ratio [1] for every elastic mode, one for each mode kept in the order of rising frequency, or a
+        One damping ratio [1] for every elastic mode, one for each mode kept in the order of increasing frequency, or a
         law of their frequency.
     residual_flexibility : bool, optional
         Whether the modes beyond a cutoff still respond statically to forces at the points and to gravity, so that the
@@ -452,7 +452,7 @@ def _materials(given: Any) -> Any:
     """Return one material, or materials by name, after checks of their units."""
     if isinstance(given, Mapping):
         if not given:
-            raise ArgumentError("materials", "be one material or hold one", given)
+            raise ArgumentError("materials", "be a material, or hold at least one", given)
         for name, material in given.items():
             _check_material(f"materials[{name!r}]", material)
         return MappingProxyType(dict(given))
@@ -469,8 +469,8 @@ def _check_material(word: str, material: Any) -> None:
             f"carry waves of at most {at_most(FASTEST / 1000.0)} km/s",
             material,
             got=(
-                f"{speed / 1000.0:.4g} km/s from young={material.young:g} and density={material.density:g}: tonnes and "
-                "millimetres? Pa and kg/m³ are meant"
+                f"{speed / 1000.0:.4g} km/s from young={material.young:g} and density={material.density:g}: give "
+                "Pa and kg/m³, not tonnes and millimetres"
             ),
         )
 

@@ -55,7 +55,7 @@ def read_mesh(path: str | os.PathLike[str]) -> dict[str, Any]:
         with open(path, "rb"):
             pass
     if size > LARGEST_FILE:
-        raise ValueError(f"{prefix}: {at_least(size / 1024**3, 3)} GiB, at most 2 GiB are read")
+        raise ValueError(f"{prefix}: {at_least(size / 1024**3, 3)} GiB, but at most 2 GiB are read")
     if not size:
         raise ValueError(f"{prefix}: the file is empty")
     held = _read(path, form, prefix)

@@ -188,7 +188,7 @@ class SolidMesh:
         inner, outer = _two("radii", radii)
         positive("radii[0]", inner)
         if outer <= inner:
-            raise ArgumentError("radii", "rise", radii)
+            raise ArgumentError("radii", "increase", radii)
         start, end = _two("angles", angles)
         if not start < end <= start + 2.0 * np.pi * (1.0 + 1e-12):
             raise ArgumentError("angles", "increase, by at most 2 pi in all", angles)

@@ -21,7 +21,7 @@ app = typer.Typer(
 
 
 def _shipped(beginning: str) -> list[str]:
-    """Return what the shell completes to a shipped scenario; files it finds itself."""
+    """Return the shipped scenarios that complete a word; the shell completes files itself."""
     from ..scenarios.shipped import shipped
 
     return [name for name in shipped("cases") if name.startswith(beginning)]
@@ -247,7 +247,7 @@ def survey(
     amplitude: Annotated[
         float,
         typer.Option(
-            metavar="X", help="Initial amplitude of a mode over that at which a contact opens, stops or slips."
+            metavar="X", help="Initial amplitude of a mode, relative to that at which a contact opens, stops or slips."
         ),
     ] = 1e-3,
     highest: Annotated[
@@ -335,7 +335,7 @@ def stability(
     if vary is None:
         for option, value in (("--plot", plot), ("--out", out), ("--highest", highest)):
             if value is not None:
-                raise ArgumentError(option, "go with --vary", value, got=f"{value!r} alone")
+                raise ArgumentError(option, "be used with --vary", value, got=f"{value!r} alone")
         from .stability import print_stability
 
         print_stability(name, overrides, status, velocity)

@@ -40,7 +40,7 @@ def _of(name: str, body: Any) -> Iterator[str]:
             unit = "MPa" if MEGA <= one.young < YOUNG[0] else "GPa"
             yield f"{whose}: Young's modulus of {one.young:.4g} Pa; did you mean {unit}?"
         if not DENSITY[0] <= one.density <= DENSITY[1]:
-            unit = "t/mm3, as finite-element programs have it" if one.density < TONNES else "g/cm3"
+            unit = "t/mm3, as in finite-element programs" if one.density < TONNES else "g/cm3"
             yield f"{whose}: density of {one.density:.4g} kg/m3; did you mean {unit}?"
     if hasattr(body, "section"):
         across = getattr(body.section, "height", getattr(body.section, "diameter", 0.0))

@@ -19,7 +19,7 @@ def check_outputs(out: str | None, plot: str | None, word: str = "--out", figure
         Their options, for messages.
     """
     if out is not None and plot is not None and Path(out).resolve() == Path(plot).resolve():
-        raise ArgumentError(figure, f"be another file than {word}", plot, got=f"{plot!r} for both")
+        raise ArgumentError(figure, f"differ from {word}", plot, got=f"{plot!r} for both")
     if plot is not None:
         from matplotlib.figure import Figure
 

@@ -106,10 +106,10 @@ def points_of(vary: list[str], sample: int | None, seed: int | None, table: str 
     if (table is None) == (not vary):
         raise ArgumentError("points", "be given by --vary or by --points", got="neither" if table is None else "both")
     if seed is not None and sample is None:
-        raise ArgumentError("--seed", "go with --sample", got=f"{seed} alone")
+        raise ArgumentError("--seed", "be used with --sample", got=f"{seed} alone")
     if table is not None:
         if sample is not None:
-            raise ArgumentError("--sample", "go with --vary", got="--points")
+            raise ArgumentError("--sample", "be used with --vary", got="--points")
         rows = _rows(table)
         check_count(len(rows), yes)
         return rows

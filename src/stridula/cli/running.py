@@ -32,7 +32,7 @@ def run_scenario(
     Raises
     ------
     ValueError
-        If the scenario, an override or an output is invalid; nothing is written then.
+        If the scenario, an override or an output is invalid; then nothing is written.
     OSError
         If an output cannot be written.
     Stopped
@@ -68,9 +68,9 @@ def _check_wav(wav: str, name: str, out: str | None, plot: str | None, scenario:
 
     for option, other in (("--out", out), ("--plot", plot)):
         if other is not None and Path(other).resolve() == Path(wav).resolve():
-            raise ArgumentError("--wav", f"be another file than {option}", wav, got=f"{wav!r} for both")
+            raise ArgumentError("--wav", f"differ from {option}", wav, got=f"{wav!r} for both")
     if Path(name).is_file() and Path(name).resolve() == Path(wav).resolve():
-        raise ArgumentError("--wav", "be another file than the scenario", wav, got=f"{wav!r} for both")
+        raise ArgumentError("--wav", "differ from the scenario", wav, got=f"{wav!r} for both")
     check_writable(wav)
     check_ending(wav)
     check_hearable(scenario.system, scenario.surface_rate)
@@ -96,7 +96,7 @@ def _finish(
             from .sounding import write_sound
 
             sound, loud, notes = write_sound(record, scenario.system, wav)
-            level = f"at 1 m, {loud}" if loud else "none: too short, or recorded too coarsely, for a level"
+            level = f"at 1 m, {loud}" if loud else "none: too short, or its sample rate too low, for a level"
             written.append(sound)
     finally:
         print_card(record, scenario.title or name, written, doubts(scenario.system), scenario.system, level)
@@ -112,7 +112,7 @@ def how_to_get_the_level(record: xr.Dataset, scenario: Scenario, out: str | None
     if record.attrs["ended"] not in WHOLE:
         return ""
     if not hearable(scenario.system):
-        return "none: no body of the system can be heard"
+        return "none: no body of the system radiates sound"
     try:
         check_hearable(scenario.system, scenario.surface_rate)
     except ArgumentError as error:

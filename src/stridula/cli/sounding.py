@@ -45,7 +45,7 @@ def sound_of_record(
     Raises
     ------
     ValueError
-        If the record, a listener or an output is invalid; nothing is written then.
+        If the record, a listener or an output is invalid; then nothing is written.
     OSError
         If an output cannot be written.
     """
@@ -55,7 +55,7 @@ def sound_of_record(
     check_outputs(figures["--plot"], figures["--bands"], "--plot", "--bands")
     for option, path in (("--wav", wav), *figures.items()):
         if path is not None and Path(path).resolve() == Path(name).resolve():
-            raise ArgumentError(option, "be another file than the record", path, got=f"{path!r} for both")
+            raise ArgumentError(option, "differ from the record", path, got=f"{path!r} for both")
     if wav is not None:
         check_ending(wav)
     options = wav_options(sample_rate, full_scale, subtype)

@@ -43,7 +43,7 @@ def survey_scenario(
     Raises
     ------
     ValueError
-        If an argument is invalid; nothing is written then.
+        If an argument is invalid; then nothing is written.
     OSError
         If an output cannot be written; finished parts are kept.
     Stopped
@@ -73,14 +73,14 @@ def survey_scenario(
 def _check_table(table: str, out: str, plot: str | None) -> None:
     for option, other in (("--out", out), ("--plot", plot)):
         if other is not None and Path(other).resolve() == Path(table).resolve():
-            raise ArgumentError("--table", f"be another file than {option}", table, got=f"{table!r} for both")
+            raise ArgumentError("--table", f"differ from {option}", table, got=f"{table!r} for both")
     if not table.lower().endswith(".csv"):
         raise ArgumentError("--table", "end in .csv", table)
     check_writable(table)
 
 
 def _modes(found: xr.Dataset, title: str) -> Table:
-    """Return a table of the modes that grow at any point, by rising frequency, each with its most frequent fates."""
+    """Return a table of the modes that grow at any point, by increasing frequency, with their most frequent fates."""
     table = Table(title=escape(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
     heads = ("mode", "frequency [Hz]", "growth [1/s]", "in time [1/s]", "first unstable at")
     for head in (*heads, "becomes", "points", "tone [Hz]", "force [N rms]", "sound [dB(A)]"):

@@ -40,7 +40,7 @@ def sweep_scenario(
     Raises
     ------
     ValueError
-        If an argument is invalid; nothing is written then.
+        If an argument is invalid; then nothing is written.
     OSError
         If an output cannot be written; finished parts are kept.
     Stopped
@@ -72,13 +72,15 @@ def sweep_scenario(
 def _check_plot(points: Points, measures: Sequence[str]) -> None:
     check_two_keys(points)
     if "regime" not in measures:
-        raise ArgumentError("--plot", "go with --measure regime, which it shows", got=", ".join(measures))
+        raise ArgumentError("--plot", "be used with --measure regime, which it shows", got=", ".join(measures))
 
 
 def check_two_keys(points: Points) -> None:
     """Raise ValueError unless points can be drawn as a map."""
     if not isinstance(points, Grid) or len(points.values) != 2 or min(map(len, points.values.values())) < 2:
-        raise ArgumentError("--plot", "go with a grid of two keys of at least 2 values each, given by --vary twice")
+        raise ArgumentError(
+            "--plot", "be used with a grid of two keys of at least 2 values each, given by --vary twice"
+        )
 
 
 def _draw(found: xr.Dataset, path: str) -> None:

@@ -125,9 +125,9 @@ class PointContact:
             if len(given) != 3 or not any(given):
                 raise ArgumentError(name, "be three numbers, not all zero", given)
             if not self.is_spatial:
-                raise ArgumentError(name, "be left out between bodies in the plane: inclination turns it", given)
+                raise ArgumentError(name, "be left out between bodies in the plane: use inclination", given)
             if self.path_body is not None:
-                raise ArgumentError(name, "be left out on a beam or a plate, whose axes it has", given)
+                raise ArgumentError(name, "be left out on a beam or a plate, whose axes it takes", given)
         self._check_surface()
         self._check_circle()
         self._check_turning()

@@ -30,8 +30,8 @@ def find_a_place() -> None:
         os.environ["NUMBA_CACHE_DIR"] = folder
         numba.config.CACHE_DIR = folder  # type: ignore[attr-defined]
         warnings.warn(
-            "compiled code cannot be kept, neither beside the package nor in the home folder: each start compiles "
-            "again, which is slower; set NUMBA_CACHE_DIR to a folder that can be written",
+            "compiled code cannot be stored beside the package or in the home folder, so each start compiles again; "
+            "set NUMBA_CACHE_DIR to a writable folder",
             stacklevel=2,
         )
 

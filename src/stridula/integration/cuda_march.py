@@ -40,7 +40,7 @@ def _missing() -> str:
     if "library cannot be found" in error:
         return "the NVIDIA driver, which was not found"
     if "NO_DEVICE" in error or not error:
-        return "a GPU: there is a driver and no GPU"
+        return "a GPU: there is a driver but no GPU"
     return f"CUDA to work: {error}"
 
 

@@ -413,7 +413,7 @@ class LiveMarch:
 
 
 def _apart(attributes: dict[str, Any]) -> dict[str, Any]:
-    """Return attributes of a march with copies of what it changes in place, other than its state."""
+    """Return the attributes of a march, with copies of those that it changes in place, other than its state."""
     return attributes | {name: copy(attributes[name]) for name in ("_decimator", "_belief")}
 
 

@@ -43,7 +43,7 @@ T = TypeVar("T")
 
 
 class Options(TypedDict, total=False):
-    """Arguments of `simulate_many` that do not change the kind of what it returns."""
+    """Arguments of `simulate_many` that do not change the type of its result."""
 
     scheme: Scheme | None
     step: float | None

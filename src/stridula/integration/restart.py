@@ -94,9 +94,9 @@ def _check_whole(start: xr.Dataset) -> None:
         got = f"{times[-1]:.6g} s" if times.size else "none"
         raise ArgumentError(
             "start",
-            f"be a record up to its final state, at {last * step:.6g} s",
+            f"be a complete record, up to its final state at {last * step:.6g} s",
             start,
-            got=f"a last time of {got}: a cut record cannot be continued; run up to its last time first",
+            got=f"a last time of {got}: part of a record cannot be continued; run up to that time instead",
         )
 
 

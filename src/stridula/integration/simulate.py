@@ -113,7 +113,7 @@ def simulate(
     Interrupted
         On Ctrl-C, with the record so far.
     Diverged
-        If the result is not valid: the state is not finite, contact forces were not found, or energy was created. The
+        If the result is not valid: the state is not finite, contact forces did not converge, or energy was created. The
         message has the time, the last state of the contacts and the likely cause; the exception has the record so far.
     """
     if not isinstance(watchers, Sequence):

@@ -226,7 +226,7 @@ class _Start:
         return around, around - passed
 
     def _at_first_step(self, increments: Array) -> tuple[Array, Array]:
-        """Return gaps and slips after the first step without contact force, at the places of the tips then."""
+        """Return gaps and slips after the first step without contact force, at the new places of the tips."""
         places = [
             one.at + travel @ (self.arrays.position + increments) + moved
             for one, travel, moved in zip(self.arrays.contacts, self.travels, self.after[:, 0], strict=True)

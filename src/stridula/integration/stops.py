@@ -24,7 +24,7 @@ ENDED = {
 }
 WHAT = {
     "not finite": "the state is no longer finite",
-    "contact unsolved": "the contact forces were not found",
+    "contact unsolved": "the contact forces did not converge",
     "energy created": "energy was created",
 }
 CAUSE = {

@@ -171,7 +171,7 @@ def _ratio_at(speed: float, law: FrictionLaw, contact: str) -> float:
     if law.depends_on_speed and not speed:
         raise ArgumentError(
             "velocity",
-            f"be given for {contact}: its {law.law} friction depends on the slip speed, and nothing prescribes that",
+            f"be given for {contact}: its {law.law} friction depends on the slip speed, which nothing prescribes",
         )
     return float(law.coefficient_at(speed or 1.0))
 

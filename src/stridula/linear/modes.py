@@ -20,7 +20,7 @@ ROUND_OFF = 1e-9
 
 
 def modes_of(structure: Structure, motion: Vibration, modes: int | None = None, near: float = 0.0) -> Exponents:
-    """Return exponents by rising frequency, with shapes of norm 1 whose largest entry is real.
+    """Return exponents by increasing frequency, with shapes of norm 1 whose largest entry is real.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ ROUND_OFF = 1e-9
 
 @dataclass(frozen=True)
 class ModesAtRest:
-    """Modes of vibration about the initial equilibrium of a run, by rising frequency.
+    """Modes of vibration about the initial equilibrium of a run, by increasing frequency.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ def equilibrium_at_start(system: System, asked: InitialEquilibrium) -> tuple[str
     pressed = any(drive.push is not None for drive in system.drives) or any(map(pushes, system.connections))
     if pressed and not structure.load.any():
         raise ArgumentError(
-            "drives", "press from the start, where runs begin in equilibrium", got="loads that rise later"
+            "drives", "press from the start, because runs begin in equilibrium", got="loads that rise later"
         )
     status = given_status(asked.status, system)
     found = find_equilibrium(structure, given_velocity(asked.velocity, structure, status), status)

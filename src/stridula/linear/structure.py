@@ -208,7 +208,7 @@ class Structure:
             if int(missed.argmax()) < int(closed.sum()):
                 raise ArgumentError("drives", f"let bodies follow the motion along the normal of {name}")
             if status[contact] == STICKING:
-                raise ArgumentError("status", f"let {name} slide, whose track nothing can follow", STICKING)
+                raise ArgumentError("status", f"let {name} slide: nothing can follow its track", STICKING)
             raise ArgumentError(
                 "velocity",
                 "be one at which bodies move as a whole",

@@ -86,7 +86,7 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
             if (slip @ passing).any():
                 name = structure.system.contact_names[k]
                 raise ArgumentError(
-                    "status", f"not let {name} stick to a body that turns: it is carried away", STICKING
+                    "status", f"not let {name} stick to a body that turns: it would be carried away", STICKING
                 )
             held[len(closed) + stuck.index(k)] = slip
         for one in _answers(structure, equilibrium, k, slip):

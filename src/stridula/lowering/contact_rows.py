@@ -29,7 +29,7 @@ class ContactRows:
     bending, axial : tuple of int
         Ranges of the modes of each kind of a track along which the tip moves.
     is_second : bool
-        Whether the tangent is the second of a contact in space; the normal is zero then.
+        Whether the tangent is the second of a contact in space; its normal is then zero.
     circle : TurningModes or None
         Modes of the body round which the tip moves; its rows in `fixed` are those at the start.
     """

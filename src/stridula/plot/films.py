@@ -66,7 +66,7 @@ def animate(
         Any system in the plane, or with a `SolidBody` or an `AxisymmetricBody`.
     out : str or Path
         The file, ``.mp4`` or ``.gif``, written whole or not at all. MP4 requires an encoder: ``pip install
-        .[video]`` in the sources, or ffmpeg on the path.
+        .[video]`` in the source folder, or ffmpeg on the path.
     start, duration : float, optional
         The window of time [s].
     slowdown : float, optional

@@ -229,7 +229,7 @@ class PlaneDrawing:
                 tail = place - (0.08 + 0.04 * number) * self.extent * normal - 0.3 * self.extent * tangent
                 moved = np.sign(value) * way
                 label = f"track {spoken(abs(value), units)}{in_time(getattr(track, history))}"
-                self._arrow(tail, tail + ARROW * self.extent * moved, VELOCITY, "velocity that is prescribed", label)
+                self._arrow(tail, tail + ARROW * self.extent * moved, VELOCITY, "prescribed velocity", label)
 
     def _draw_supports(self) -> None:
         for one in self.outlines:
@@ -359,7 +359,7 @@ class PlaneDrawing:
             if place is not None:
                 label = f"{spoken(abs(imposed.velocity), 'm/s')}{in_time(imposed.history)}"
                 head = place + ARROW * self.extent * np.array([np.sign(imposed.velocity), 0.0])
-                self._arrow(place, head, VELOCITY, "velocity that is prescribed", label, at_tail=False)
+                self._arrow(place, head, VELOCITY, "prescribed velocity", label, at_tail=False)
         for drive in self.system.drives:
             moved = drive.uniform_velocity
             if moved is None or not moved.any():
@@ -369,7 +369,7 @@ class PlaneDrawing:
             tail = place + 0.04 * self.extent * np.array([-moved[1], moved[0]]) / speed
             head = tail + ARROW * self.extent * moved[:2] / speed
             words = f"{spoken(speed, 'm/s')} at the start"
-            self._arrow(tail, head, VELOCITY, "velocity that is prescribed", words, at_tail=False)
+            self._arrow(tail, head, VELOCITY, "prescribed velocity", words, at_tail=False)
 
     def _draw_fall(self) -> None:
         for drive in self.system.drives:

@@ -89,7 +89,7 @@ def mode_shapes(
     if hasattr(what, "contacts") and hasattr(what, "bodies"):
         shown = _of_system(what, numbers, theory)
     elif theory is not None:
-        raise ArgumentError("theory", "go with a System", theory)
+        raise ArgumentError("theory", "be used with a System", theory)
     else:
         shown = _of_body(what, numbers)
     figure, spaces = _panels(len(shown.numbers), shown.shape, shown.is_flat)

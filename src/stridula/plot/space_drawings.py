@@ -127,7 +127,7 @@ class SpaceDrawing:
         arc = np.array(body.origin) + height * axis + radius * ring
         self._line(arc, VELOCITY, 1.8)
         self._head(arc[-1], arc[-1] - arc[-2], VELOCITY)
-        self._legend("velocity that is prescribed", VELOCITY)
+        self._legend("prescribed velocity", VELOCITY)
 
     def _draw_connections(self) -> None:
         found: list[Placed] = []
@@ -253,5 +253,5 @@ class SpaceDrawing:
 
 
 def spread(things: list[Cluster], most: int) -> list[Cluster]:
-    """Return at most so many of things, evenly taken."""
+    """Return at most a given number of things, taken evenly."""
     return things if len(things) <= most else [things[k] for k in np.linspace(0, len(things) - 1, most).astype(int)]

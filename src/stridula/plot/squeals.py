@@ -74,7 +74,7 @@ def squeal_map(found: xr.Dataset) -> Figure:
         figure.colorbar(mesh, ax=axes, label="strongest tone [Hz]", format="%g")
     if scale is not None and tones.size <= MOST_NUMBERS:
         _write_numbers(axes, found["living_modes"].values, scale(tones), x, y)
-        patches.append(Line2D([], [], linestyle="none", marker="$n$", color="black", label="n modes live on"))
+        patches.append(Line2D([], [], linestyle="none", marker="$n$", color="black", label="n modes live"))
     lines = _draw_bounds(axes, found["verdict"].values, x, y)
     name_axis(axes, found, across, "x")
     name_axis(axes, found, along, "y")
@@ -115,7 +115,7 @@ def _quiet(found: xr.Dataset) -> Array:
 
 def _draw_quiet(axes: Axes, quiet: Array, x: Array, y: Array) -> list[Any]:
     """Draw the points as if none vibrated, and return the handles of the legend."""
-    # What vibrates is drawn over it.
+    # Vibrating bodies are drawn over it.
     colours = np.array([_rgb(colour) for colour in (*QUIET.values(), "#ffffff")])
     axes.pcolormesh(edges(x), edges(y), colours[quiet.T], rasterized=True)
     return [

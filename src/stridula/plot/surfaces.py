@@ -308,7 +308,7 @@ def _ends(span: Any) -> tuple[float, float]:
         raise ArgumentError("span", "be a start and an end", span)
     low, high = (finite(f"span[{k}]", one) for k, one in enumerate(span))
     if high <= low:
-        raise ArgumentError("span", "rise", span)
+        raise ArgumentError("span", "end after it starts", span)
     return low, high
 
 

@@ -29,7 +29,7 @@ def counted(share: Array) -> Array:
 
 
 def by_point(run: xr.Dataset, names: Sequence[str] = OF_POINTS) -> xr.Dataset:
-    """Return a record with all points of its surfaces as contacts; itself if they already are, or were not recorded.
+    """Return a record with the recorded points of its surfaces as contacts; a record without them is unchanged.
 
     It has the forces, status shares and landings of all contacts, or the named ones of these variables, and all
     variables that do not belong to contacts.

@@ -34,7 +34,7 @@ def record(name: str, value: Any, *needed: str, least: int = 0) -> xr.Dataset:
     Raises
     ------
     ValueError
-        If it is something else, such as the name of a file, lacks a variable or samples, or its times do not rise.
+        If it is something else, such as the name of a file, lacks a variable or samples, or its times do not increase.
     """
     if not isinstance(value, xr.Dataset):
         way = ": read a file with load" if isinstance(value, (str, Path)) else ""
@@ -56,7 +56,7 @@ def signal(name: str, value: Any) -> xr.DataArray:
     Raises
     ------
     ValueError
-        If it is something else, or its times do not rise.
+        If it is something else, or its times do not increase.
     """
     instance(name, value, xr.DataArray)
     if "time" not in value.dims or "time" not in value.coords:
@@ -67,7 +67,7 @@ def signal(name: str, value: Any) -> xr.DataArray:
 
 
 def check_times(name: str, times: xr.DataArray) -> None:
-    """Raise ValueError unless times are finite numbers that rise."""
+    """Raise ValueError unless times are finite and increasing."""
     values = times.values
     if times.dims != ("time",) or values.dtype.kind not in NUMBERS:
         raise ArgumentError(

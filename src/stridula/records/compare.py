@@ -101,7 +101,7 @@ def _common(a: xr.Dataset, b: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
         numbers.append(np.rint(record["time"].values / intervals[-1]).astype(np.int64))
     if abs(intervals[1] - intervals[0]) > 1e-9 * intervals[0]:
         raise ArgumentError(
-            "b", f"have the sample interval of a, {intervals[0]!r} s", intervals[1], got=f"{intervals[1]!r} s"
+            "b", f"have the same sample interval as a, {intervals[0]!r} s", intervals[1], got=f"{intervals[1]!r} s"
         )
     _, ours, theirs = np.intersect1d(numbers[0], numbers[1], return_indices=True)
     if ours.size == 0:

@@ -39,10 +39,10 @@ def located(tables: dict[str, Any], overrides: Mapping[str, Any]) -> tuple[dict[
     for number, (key, value) in enumerate(overrides.items()):
         if len(problems) >= MOST_PROBLEMS - 1:
             # Each problem requires a search of the whole outline.
-            problems.append(f"keys must be valid before others are checked, {len(overrides) - number} were not checked")
+            problems.append(f"keys must be valid before others are checked; {len(overrides) - number} were not checked")
             break
         if key == "base":
-            problems.append(f"base must be written in the file, it cannot be set by key, got {brief(value)}")
+            problems.append(f"base must be written in the file and cannot be set by key, got {brief(value)}")
             continue
         value = plain_value(value)
         try:
@@ -84,11 +84,11 @@ def find(key: str, tables: dict[str, Any], is_table: bool = False) -> Path:
     candidates = full or present or beside or ending
     if not candidates:
         raise ScenarioError(
-            [f"key must be one of the scenario's, got {brief(key)}{_nearest(asked, list(known), tables)}"]
+            [f"key must be a key of the scenario, got {brief(key)}{_nearest(asked, list(known), tables)}"]
         )
     if len(candidates) > 1:
         places = listed(".".join(_text(path)) for path in candidates)
-        raise ScenarioError([f"key must mean one place, got {brief(key)}, which fits {places}"])
+        raise ScenarioError([f"key must name one place, got {brief(key)}, which fits {places}"])
     path = candidates[0]
     return path if is_table else _only_number(key, path, tables)
 
@@ -102,7 +102,7 @@ def _only_number(key: str, path: Path, tables: dict[str, Any]) -> Path:
     given = [name for name in numbers if outline.look_up(tables, (*path, name)) is not None]
     if len(given or numbers) == 1:
         return (*path, (given or numbers)[0])
-    raise ScenarioError([f"key must mean one value, got {brief(key)}, a table: set one of its keys {listed(below)}"])
+    raise ScenarioError([f"key must name one value, got {brief(key)}, a table: set one of its keys {listed(below)}"])
 
 
 def _set(tables: dict[str, Any], path: Path, value: Any) -> None:

@@ -113,7 +113,7 @@ def _file_tables(path: Path) -> dict[str, Any]:
 
 @cache
 def _standard_input() -> bytes:
-    """Return all that comes in, which is read once: what takes a scenario by its name may ask again."""
+    """Return the standard input, read only once: several functions may load the same scenario by name."""
     return sys.stdin.buffer.read()
 
 

@@ -49,7 +49,7 @@ class MotionOfMode(Table):
     body: str | None = None
     """body: slider, track or its name; the track if left out, the slider on a rigid track"""
     mode: Annotated[int, is_.Whole(0)]
-    """number of the mode from 0, by rising frequency, residual shapes last"""
+    """number of the mode from 0, by increasing frequency, residual shapes last"""
 
 
 class MotionOfBody(Table):
@@ -77,11 +77,11 @@ class Simulation(Table):
     step: is_.Time | None = None
     """time step, a fixed fraction of the scheme's limit if left out [s]"""
     sample_rate: is_.Frequency = 100e3
-    """samples recorded per second [Hz]"""
+    """sample rate of the record [Hz]"""
     surface_rate: is_.FrequencyOrAll | None = None
-    """maps of surfaces recorded per second, without single points [Hz], or all: each point as a contact"""
+    """rate of maps of surfaces, without records of single points [Hz], or all: each point is a contact"""
     motion_rate: is_.Frequency | None = None
-    """motion of bodies recorded per second, for their sound, only that of probes modal_motion if left out [Hz]"""
+    """sample rate of the recorded motion of bodies, for their sound; if left out, only probes record motion [Hz]"""
     probes: list[Probe] | None = None
     """additional quantities to record, the acceleration of the track's centre if left out"""
     contact_solve: ContactSolve | None = None

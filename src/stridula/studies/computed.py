@@ -127,7 +127,7 @@ def _computed(
     out : str, Path or None
         File to write; finished parts are kept beside it.
     workers : int or None
-        Parts at a time; as many as there are processors if None.
+        Parts at a time; one per processor if None.
     client : distributed.Client or None
         Machines that compute the parts, in place of this one.
     watchers : sequence of callable

@@ -67,7 +67,7 @@ def ensemble(
     confidence : float, optional
         Level of the interval [1], strictly between 0 and 1.
     workers : int, optional
-        Runs at a time; as many as there are processors if left out.
+        Runs at a time; default: one per processor.
     progress : bool, optional
         Whether a bar on standard error shows how far the runs are and how long they will still take.
     **options

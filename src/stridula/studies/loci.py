@@ -258,7 +258,7 @@ def _rising(values: Sequence[float] | Array) -> Array:
     except (TypeError, ValueError):
         grid = np.empty(0)
     if grid.ndim != 1 or grid.size < 2 or not np.isfinite(grid).all() or (np.diff(grid) <= 0.0).any():
-        raise ArgumentError("values", "be at least 2 finite numbers that rise", values)
+        raise ArgumentError("values", "be at least 2 increasing finite numbers", values)
     return grid
 
 

@@ -144,7 +144,7 @@ class LatinHypercube:
     Raises
     ------
     ValueError
-        If the ends of a range do not rise, or an argument is out of its range.
+        If the ends of a range do not increase, or an argument is out of its range.
     """
 
     ranges: Mapping[str, Any]
@@ -186,7 +186,7 @@ def ranges_of(name: str, given: Any) -> dict[str, Range]:
     Raises
     ------
     ValueError
-        If `given` is anything else, or the ends of a range do not rise.
+        If `given` is anything else, or the ends of a range do not increase.
     """
     if not isinstance(given, Mapping) or not given:
         raise ArgumentError(name, "be ranges by key", given)
@@ -206,7 +206,7 @@ def range_of(name: str, given: Any) -> Range:
     Raises
     ------
     ValueError
-        If `given` is neither, or the ends do not rise.
+        If `given` is neither, or the ends do not increase.
     """
     if isinstance(given, Range):
         return given

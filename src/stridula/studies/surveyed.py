@@ -192,7 +192,7 @@ def neighbours(layout: Layout, places: Mapping[str, Any]) -> list[list[int]]:
 def followed(modes: Sequence[Sequence[Mapping[str, Any]]], before: Sequence[Sequence[int]]) -> list[list[int]]:
     """Return the name of each mode of each point: the same for modes of about the same frequency at neighbours.
 
-    Names are numbers, by rising frequency at the first point of each mode.
+    Names are numbers, by increasing frequency at the first point of each mode.
 
     Parameters
     ----------

@@ -83,7 +83,7 @@ def squeal_survey(
         NetCDF file to write. Finished points are kept in a folder beside it, ``<out>.parts``; the same call
         resumes from there.
     workers : int, optional
-        Points at a time; as many as there are processors if left out.
+        Points at a time; default: one per processor.
     client : distributed.Client, optional
         Machines that compute the points, in place of this one.
     watchers : sequence of callable, optional

@@ -70,7 +70,7 @@ def sweep(
         NetCDF file to write. Finished parts are kept in a folder beside it, ``<out>.parts``; the same call resumes
         from there. Two processes may compute the same sweep at once.
     workers : int, optional
-        Parts at a time; as many as there are processors if left out. They are computed in threads, and in processes
+        Parts at a time; default: one per processor. They are computed in threads, and in processes
         once threads wait for each other; with functions that no other process can import, such as those of the script
         itself, only threads are used.
     client : distributed.Client, optional

@@ -222,19 +222,17 @@ def tones() -> Outcome:
 def cases() -> Iterator[Case]:
     """Yield the cases of sound in open air."""
     morse = "Morse & Ingard 1968, Theoretical Acoustics; derived in the module"
-    yield Case("sphere-in-air", "Spheres that pulsate and oscillate", morse, spheres)
+    yield Case("sphere-in-air", "Pulsating and oscillating spheres", morse, spheres)
     yield Case(
         "disc-in-air",
-        "A thin disc that oscillates, and the air with it",
+        "Added mass of air on an oscillating thin disc",
         "Lamb 1932, Hydrodynamics, section 102",
         discs,
     )
-    yield Case(
-        "bar-in-air", "A slender bar that oscillates, and the air with it", "conformal mapping of its section", bar
-    )
+    yield Case("bar-in-air", "Added mass of air on an oscillating slender bar", "conformal mapping of its section", bar)
     yield Case(
         "plate-in-air",
-        "Thin plates that oscillate, and the air with them",
+        "Added mass of air on oscillating thin plates",
         "DNV-RP-C205, added mass of rectangular plates",
         plates,
     )

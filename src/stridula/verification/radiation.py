@@ -213,7 +213,11 @@ def directivity() -> Outcome:
             words = f"mode {name}, ka = {number:g}, worst direction, at {np.degrees(slope[worst]):.0f} degrees"
             largest = float(known[:, mode].max())
             value = float(known[worst, mode]), float(found[worst, mode])
-            rows.append(Row(words, *value, error * largest, "ka / 8 over the distance in sides, of the largest", "Pa"))
+            rows.append(
+                Row(
+                    words, *value, error * largest, "far field: ka / 8 of the largest, over the distance in sides", "Pa"
+                )
+            )
         if number > 10.0:
             curves += [
                 Curve(np.degrees(slope), known[:, -1], f"{names[-1]}, closed form"),

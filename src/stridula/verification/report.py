@@ -50,12 +50,14 @@ def verify(
     """
     chosen = [case for case in cases if only is None or only.lower() in f"{case.name} {case.title}".lower()]
     if not chosen:
-        raise ArgumentError("only", f"be a word of one of {', '.join(case.name for case in cases)}", only)
+        raise ArgumentError(
+            "only", f"be part of the name or title of a case: {', '.join(case.name for case in cases)}", only
+        )
     target = Path(folder)
     try:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise type(error)(f"folder must be one that can be written to, got {str(folder)!r}") from error
+        raise type(error)(f"folder must be writable, got {str(folder)!r}") from error
     began = time.perf_counter()
     outcomes = []
     for number, case in enumerate(chosen, start=1):

@@ -173,7 +173,7 @@ CASES = (
     ),
     Case(
         "sdnd100",
-        "Slider with Coulomb friction, let go",
+        "Slider with Coulomb friction, released",
         "Code_Aster V5.02.100, SDND100: sliding of a mass on a spring with Coulomb friction",
         sdnd100,
     ),

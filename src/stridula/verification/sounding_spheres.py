@@ -242,9 +242,9 @@ def _arriving_over_leaving(radiator: SurfacePressures, shape: int, wavenumber: f
 def cases() -> Iterator[Case]:
     """Yield the cases of radiating spheres."""
     nafems = "NAFEMS, pulsating sphere; rho c v k a / sqrt(1 + k² a²)"
-    yield Case("sphere-pulsating", "NAFEMS's sphere that pulsates", nafems, pulsating)
+    yield Case("sphere-pulsating", "Pulsating sphere of NAFEMS", nafems, pulsating)
     morse = "Morse & Ingard 1968, Theoretical Acoustics"
-    yield Case("sphere-oscillating", "A sphere that oscillates, on its surface and away", morse, oscillating)
+    yield Case("sphere-oscillating", "An oscillating sphere, on its surface and away from it", morse, oscillating)
     lamb = "Lamb 1882, Proc. London Math. Soc. 13, 189-212; Morse & Ingard 1968"
     yield Case("elastic-ball", "An elastic ball: its modes, its sound and the power", lamb, ball)
 

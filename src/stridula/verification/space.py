@@ -47,7 +47,15 @@ def slope() -> Outcome:
         worst = float(whole[np.abs(whole - THROWN).argmax()])
         return [
             Row("speed in the end", THROWN / 2.0, float(speed[-1]), share * THROWN, reason, "m/s", scheme.name),
-            Row("speed and speed downhill, worst", THROWN, worst, 2.0 * share * THROWN, reason, "m/s", scheme.name),
+            Row(
+                "speed plus downhill speed, at the largest error",
+                THROWN,
+                worst,
+                2.0 * share * THROWN,
+                reason,
+                "m/s",
+                scheme.name,
+            ),
             Row("velocity across in the end", 0.0, float(along[-1]), 1e-9, "falls exponentially", "m/s", scheme.name),
         ]
 
@@ -92,7 +100,7 @@ def across() -> Outcome:
 CASES = (
     Case(
         "particle-on-a-slope",
-        "A particle thrown along a slope of friction's angle",
+        "A particle thrown along a slope at the angle of friction",
         "energy and momentum along the slope, closed form",
         slope,
     ),

@@ -168,7 +168,7 @@ CASES = (
     ),
     Case(
         "pin-on-disc",
-        "A pin that leans on a turning disc: the mode that squeals",
+        "A pin that leans on a turning disc: the squealing mode",
         "Allgaier, Gaul, Keiper & Willner 1999, as Ansys' VM275; growth: our linear theory",
         pin_on_disc,
     ),

@@ -77,7 +77,7 @@ def disc_case() -> Outcome:
     worst = int(np.abs(found - known).argmax())
     rows = [
         Row(
-            "frequency in space, worst",
+            "frequency in space, at the largest error",
             float(known[worst]),
             float(found[worst]),
             1e-8 * known[worst],
@@ -130,13 +130,13 @@ def disc_case() -> Outcome:
 CASES = (
     Case(
         "turning-ring",
-        "A ring that turns: its waves lag behind it",
+        "A turning ring: its waves lag behind it",
         "Bryan (1890); Ansys VM302, after Genta (2005)",
         ring_case,
     ),
     Case(
         "turning-disc",
-        "A disc that turns: split pairs, standing waves, beats",
+        "A turning disc: split pairs, standing waves, beats",
         "waves carried round, closed form",
         disc_case,
     ),

@@ -369,7 +369,7 @@ function listen() {
   if (!sources) return;
   const { words, full_scale: fullScale, unit } = sources[$("source").value];
   const levelled = $("levelled").checked;
-  $("source-words").textContent = `${words} 0 dB: ${levelled ? "the loudest of the last 4 s is 3 dB below full scale" : `${fullScale} ${unit} is full scale`}.`;
+  $("source-words").textContent = `${words} 0 dB: ${levelled ? "the loudest sound of the last 4 s is 3 dB below full scale" : `${fullScale} ${unit} is full scale`}.`;
   $("volume-out").textContent = `${$("volume").value} dB`;
   sound.volume(Number($("volume").value), levelled);
   loop.volume(Number($("volume").value));
@@ -467,7 +467,7 @@ async function readLink() {
   try {
     return await scene.read(location.hash);
   } catch {
-    problem(["The link cannot be read: it must be a link made by Copy link."]);
+    problem(["The link cannot be read: use a link made with Copy link."]);
     badLink = !described;
     return false;
   }

@@ -122,7 +122,7 @@ export class RegimeMap {
 
   done() {
     this.pending = null;
-    this.words.textContent = "up to 1 s from the start";
+    this.words.textContent = "runs of up to 1 s from the start";
   }
 
   #frame() {

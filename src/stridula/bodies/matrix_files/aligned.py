@@ -75,9 +75,9 @@ def files_of(path: PathLike) -> dict[str, PathLike]:
     if not files:
         raise ArgumentError(
             "path",
-            "be a file with everything, .npz, .mat, or of Nastran or CalculiX",
+            "be a file with all matrices: .npz, .mat, Nastran or CalculiX",
             os.fspath(path),
-            got=f"{os.fspath(path)!r}; files of one matrix each are given as mass and stiffness",
+            got=f"{os.fspath(path)!r}; give files of single matrices as mass and stiffness",
         )
     return files
 
@@ -104,7 +104,7 @@ def read_matrices(paths: Mapping[str, PathLike], labels: PathLike | None = None)
     if len(labelled) > 1:
         raise ArgumentError(
             "mass, stiffness and damping",
-            "all be with labels (node and degree of freedom of every row) or all without",
+            "all have labels (node and degree of freedom of every row) or none",
             got=", ".join((f"{name} with" + ("" if f.keys is not None else "out") for name, f in files.items())),
         )
     if labelled == {True}:
@@ -136,7 +136,7 @@ def _one_matrix(name: str, path: PathLike) -> Entries:
             name,
             "be a file of matrices alone",
             os.fspath(path),
-            got=f"{os.fspath(path)!r}; a file with all matrices is given as path",
+            got=f"{os.fspath(path)!r}; give a file with all matrices as path",
         )
     with whole_file(path):
         return kind.matrix(name, path)

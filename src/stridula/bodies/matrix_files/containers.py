@@ -57,7 +57,7 @@ def _npz(path: str | os.PathLike[str]) -> dict[str, Any]:
     with zipfile.ZipFile(path) as archive:
         unpacked = sum(entry.file_size for entry in archive.infolist())
         if unpacked > limits.LARGEST_FILE:
-            raise ValueError(f"{at_least(unpacked / 1024**3, 3)} GiB when unpacked, at most 2 GiB are read")
+            raise ValueError(f"{at_least(unpacked / 1024**3, 3)} GiB when unpacked, but at most 2 GiB are read")
         entries = _arrays_in(archive)
         for name, entry in entries.items():
             _check_header(name, archive, entry)
@@ -86,7 +86,7 @@ def _check_header(name: str, archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -
         raise ArgumentError(name, "be an array of numbers", got=f"one of kind {kind}")
     check_size(name, max(shape, default=0))
     if math.prod(shape) * kind.itemsize > entry.file_size:
-        raise ArgumentError(name, f"hold the {math.prod(shape)} numbers that its header says, it holds less")
+        raise ArgumentError(name, f"hold the {math.prod(shape)} numbers that its header announces, but holds fewer")
 
 
 def _by_words(held: Mapping[str, Any]) -> dict[str, Any]:
@@ -96,11 +96,11 @@ def _by_words(held: Mapping[str, Any]) -> dict[str, Any]:
         if symbol not in held:
             continue
         if word in held and not _equal(held[symbol], held[word]):
-            raise ValueError(f"it must hold {word} once, it holds {word} and {symbol}, which differ")
+            raise ValueError(f"it must hold {word} once, but holds {word} and {symbol}, which differ")
         arrays[word] = held[symbol]
     for name in MATRICES[:2]:
         if name not in arrays:
-            raise ValueError(f"it must hold {name}, it holds {listed(sorted(arrays) or ['nothing known'])}")
+            raise ValueError(f"it must hold {name}, but holds {listed(sorted(arrays) or ['nothing known'])}")
     return arrays
 
 

@@ -58,7 +58,7 @@ class Entries:
         """
         rows, named = self.size or self.least_size, len(labels)
         if self.least_size > named or self.size not in (None, named):
-            words = f"it must name {rows} rows, as many as {name} has, it names {named}"
+            words = f"it must name {rows} rows, as many as {name} has, but names {named}"
             raise ValueError(words + (": a model of cyclic symmetry is not read" if rows == 2 * named else ""))
         return replace(self, size=named, keys=key_of(labels[:, 0], labels[:, 1]))
 
@@ -97,7 +97,7 @@ def both_triangles(rows: Array, columns: Array, values: Array, what: str) -> tup
         If it holds entries of both.
     """
     if (rows < columns).any() and (rows > columns).any():
-        raise ValueError(f"it must hold one triangle, {what}, it holds entries of both")
+        raise ValueError(f"it must hold one triangle, {what}, but holds entries of both")
     return with_mirror_images(rows, columns, values)
 
 
@@ -114,7 +114,7 @@ def check_full(rows: Array, columns: Array, size: int, what: str) -> None:
         held = {-1: "the upper triangle", 1: "the lower triangle"}
         sides = {int(side) for side in np.sign(rows - columns)} - {0}
         got = held[sides.pop()] if len(sides) == 1 else "one of each pair of entries"
-        raise ValueError(f"it must hold both triangles, {what}, it holds {got} only")
+        raise ValueError(f"it must hold both triangles, {what}, but holds {got} only")
 
 
 def filled_in(

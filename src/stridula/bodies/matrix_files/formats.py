@@ -95,15 +95,15 @@ TEXT = Format("Abaqus", matrix=read_abaqus)
 REFUSED: tuple[tuple[Callable[[bytes, str], bool], str], ...] = (
     (
         lambda head, ending: head.startswith((b"MATLAB 7.3", b"\x89HDF")),
-        "a MATLAB file of version 7.3, save it with '-v7'",
+        "a MATLAB file of version 7.3; save it with '-v7'",
     ),
     (
         lambda head, ending: ending == ".full" and b"\0" in head,
-        "a binary file of Ansys, write its matrices with HBMAT",
+        "a binary file of Ansys; write its matrices with HBMAT",
     ),
     (
         lambda head, ending: ending == ".op2" and b"\0" in head,
-        "an OUTPUT2 file of Nastran, write its matrices as OUTPUT4 or DMIG",
+        "an OUTPUT2 file of Nastran; write its matrices as OUTPUT4 or DMIG",
     ),
 )
 
@@ -124,7 +124,7 @@ def format_of(path: PathLike) -> Format:
         with open(path, "rb") as file:
             head = file.read(HEAD)
     if size > limits.LARGEST_FILE:
-        raise ValueError(f"{cannot}: {at_least(size / 1024**3, 3)} GiB, at most 2 GiB are read")
+        raise ValueError(f"{cannot}: {at_least(size / 1024**3, 3)} GiB, but at most 2 GiB are read")
     if not head:
         raise ValueError(f"{cannot}: the file is empty")
     ending = Path(path).suffix.lower()

@@ -46,8 +46,8 @@ def read_harwell_boeing(name: str, path: str | os.PathLike[str]) -> Entries:
     columns = np.repeat(np.arange(size, dtype=np.int32), np.diff(starts).astype(np.int64))
     i, j, values = _kept(rows.astype(np.int32), columns, values)
     if kind[1] == "S":
-        return Entries(*both_triangles(i, j, values, "as its header says symmetric"), size)
-    check_full(i, j, size, "as its header says unsymmetric")
+        return Entries(*both_triangles(i, j, values, "as its header declares it symmetric"), size)
+    check_full(i, j, size, "as its header declares it unsymmetric")
     return Entries(i, j, values, size)
 
 
@@ -65,7 +65,7 @@ def _heading(name: str, lines: Lines) -> tuple[str, int, int]:
         raise ArgumentError(name, "be square", got=f"{rows} x {columns}")
     check_size(name, rows, LARGEST_SPARSE)
     if held > rows * columns:
-        raise ValueError(f"the header must announce at most {rows * columns} entries, it says {held}")
+        raise ValueError(f"the header must announce at most {rows * columns} entries, but announces {held}")
     return kind, rows, held
 
 

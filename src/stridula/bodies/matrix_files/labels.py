@@ -38,7 +38,7 @@ def read_labels(path: str | os.PathLike[str]) -> Array:
     _, place, times = np.unique(labels, axis=0, return_index=True, return_counts=True)
     if times.max() > 1:
         node, dof = labels[place[np.argmax(times > 1)]].tolist()
-        raise ValueError(f"each row must be another degree of freedom, node {node} has {dof} twice")
+        raise ValueError(f"each row must be a different degree of freedom, but node {node} has {dof} twice")
     return labels
 
 
@@ -76,5 +76,5 @@ def _of_ansys(rest: Iterator[str]) -> Iterator[tuple[int, tuple[int, int]]]:
 def _lines(first: int, lines: Iterator[str]) -> Iterator[tuple[int, str]]:
     for count, (number, line) in enumerate(((n, text) for n, text in enumerate(lines, first) if text.strip()), 1):
         if count > LARGEST_SPARSE:
-            raise ValueError(f"it must name at most {LARGEST_SPARSE} rows, it names more")
+            raise ValueError(f"it must name at most {LARGEST_SPARSE} rows, but names more")
         yield number, line.strip()

@@ -133,17 +133,17 @@ def _matrix(heading: _Heading, variable: memoryview, order: str) -> Any:
     if kind == SPARSE:
         return _sparse(name, shape, parts)
     if not parts or parts[0].size != math.prod(shape):
-        raise ValueError(f"{name} must hold {math.prod(shape)} numbers, as its shape {shape} says")
+        raise ValueError(f"{name} must hold {math.prod(shape)} numbers, as its shape {shape} requires")
     return parts[0].reshape(shape, order="F")
 
 
 def _sparse(name: str, shape: tuple[int, ...], parts: list[Array]) -> Any:
     if len(shape) != 2 or len(parts) < 3 or parts[1].size != shape[1] + 1:
-        raise ValueError(f"{name} must hold rows, columns and values, as its shape {shape} says")
+        raise ValueError(f"{name} must hold rows, columns and values, as its shape {shape} requires")
     rows, starts, values = parts[:3]
     held = int(starts[-1])
     if not 0 <= held <= min(rows.size, values.size):
-        raise ValueError(f"{name} must hold the {held} values that its columns say, it holds less")
+        raise ValueError(f"{name} must hold the {held} values that its columns announce, but holds fewer")
     whole = rows[:held].astype(np.int64), starts.astype(np.int64)
     matrix = scipy.sparse.csc_array((values[:held].astype(float), *whole), shape=shape)
     matrix.check_format(full_check=True)

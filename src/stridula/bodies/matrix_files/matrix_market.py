@@ -27,9 +27,11 @@ def read_matrix_market(name: str, path: str | os.PathLike[str]) -> Entries:
         raise ArgumentError(name, "be square", got=f"{rows} x {columns}")
     check_size(name, rows, LARGEST_SIZE if layout == "array" else LARGEST_SPARSE)
     if field not in ("real", "integer", "unsigned-integer") or entries > rows * columns:
-        raise ValueError(f"the header must announce at most {rows * columns} real entries, it says {entries} {field}")
+        raise ValueError(
+            f"the header must announce at most {rows * columns} real entries, but announces {entries} {field}"
+        )
     if symmetry not in ("general", "symmetric"):
-        raise ValueError(f"the header must announce a general or symmetric matrix, it says {symmetry}")
+        raise ValueError(f"the header must announce a general or symmetric matrix, but announces {symmetry}")
     symmetric = symmetry == "symmetric"
     if layout == "array":
         count = rows * (rows + 1) // 2 if symmetric else entries
@@ -46,7 +48,7 @@ def read_matrix_market(name: str, path: str | os.PathLike[str]) -> Entries:
     if symmetric:
         i, j, values = with_mirror_images(i, j, values)
     else:
-        check_full(i, j, rows, "as its header says general")
+        check_full(i, j, rows, "as its header declares it general")
     return Entries(i, j, values, rows)
 
 
@@ -65,7 +67,7 @@ def _numbers(path: str | os.PathLike[str], layout: Layout, count: int) -> list[A
     held = columns[-1].size
     if held != count:
         words = "more" if held > count else held or "none"
-        raise ValueError(f"it must hold {count} entries, as its header says, it holds {words}")
+        raise ValueError(f"it must hold {count} entries, as its header announces, but holds {words}")
     return columns
 
 

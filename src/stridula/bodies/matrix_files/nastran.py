@@ -53,7 +53,7 @@ def chosen(role: str, held: Iterable[Held]) -> Held:
     if len(found) != 1:
         got = listed(matrix.name for matrix in (found or square)) if square else "none that is square and not zero"
         which = "one" if found else "a"
-        raise ValueError(f"it must hold {which} matrix whose name begins with {letter} for {role}, it holds {got}")
+        raise ValueError(f"it must hold {which} matrix whose name begins with {letter} for {role}, but holds {got}")
     if not found[0].is_real:
         raise ArgumentError(role, "be real", got=f"complex numbers in {found[0].name}")
     return found[0]

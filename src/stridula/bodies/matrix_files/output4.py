@@ -144,7 +144,9 @@ def _string(heading: Heading, first: int, count: int) -> tuple[int, int]:
     """Return the row from 0 that a string begins with and its length, or raise ValueError if it does not fit."""
     rows = count if heading.is_real else count // 2
     if min(first, count + 1) < 1 or first + rows > heading.rows + 1:
-        raise ValueError(f"{heading.name} has {heading.rows} rows, a column has {count} numbers from row {first} on")
+        raise ValueError(
+            f"{heading.name} has {heading.rows} rows, but a column has {count} numbers from row {first} on"
+        )
     return first - 1, count
 
 
@@ -240,9 +242,9 @@ class _Binary:
             return None
         record = self._record()
         if len(record) == LONG_HEADING_BYTES:
-            raise ValueError("it has integers of 64 bits, write it with those of 32 bits or as text")
+            raise ValueError("it has 64-bit integers; write it with 32-bit integers or as text")
         if len(record) != HEADING_BYTES:
-            raise ValueError(f"the heading of a matrix must have {HEADING_BYTES} bytes, it has {len(record)}")
+            raise ValueError(f"the heading of a matrix must have {HEADING_BYTES} bytes, but has {len(record)}")
         columns, rows, form, kind = struct.unpack(f"{self._order}4i", record[:16])
         name = record[16:].decode("latin-1").strip("\0 ").upper()
         return _checked(Heading(name, columns, abs(rows), form, kind, rows < 0))
@@ -256,8 +258,8 @@ class _Binary:
         if not keep:
             return column, [(0, np.empty(0))]
         if words < 0 or len(data) < 4 * words:
-            wanted = f"hold the {words} words that it says"
-            raise ValueError(f"column {column} of {heading.name} must {wanted}, it holds less")
+            wanted = f"hold the {words} words that it announces"
+            raise ValueError(f"column {column} of {heading.name} must {wanted}, but holds fewer")
         if column > heading.columns:
             return column, []
         if first > 0:
@@ -269,7 +271,7 @@ class _Binary:
             place += count
             if length < 1 or place + length > words:
                 raise ValueError(
-                    f"column {column} of {heading.name} must hold strings of numbers, it holds something else"
+                    f"column {column} of {heading.name} must hold strings of numbers, but holds something else"
                 )
             strings.append(self._numbers(heading, row, data[4 * place : 4 * (place + length)]))
             place += length

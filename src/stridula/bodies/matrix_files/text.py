@@ -129,7 +129,7 @@ class Lines:
         """
         line = self.take()
         if not line:
-            raise ValueError(f"line {self.number + 1} must be {wanted}, the file ends before")
+            raise ValueError(f"line {self.number + 1} must be {wanted}, but the file ends before it")
         return line
 
     def bad(self, wanted: str, got: str) -> ValueError:

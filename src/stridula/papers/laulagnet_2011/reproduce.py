@@ -41,7 +41,7 @@ def reproduce(folder: str | Path, report: Callable[[str], None] = lambda name: N
     try:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise type(error)(f"folder must be one that can be written to, got {str(folder)!r}") from error
+        raise type(error)(f"folder must be writable, got {str(folder)!r}") from error
     runs = Runs(report=report)
     for case in CASES:
         save_record(runs.record(case), target / f"{case}.nc")

@@ -119,7 +119,7 @@ def hoffmann(scale: float = 1.0, damping: float = 0.0, foot: float = FOOT) -> Co
     Parameters
     ----------
     scale : float, optional
-        Number by which all springs are stiffer: frequencies go with its root.
+        Factor on all spring stiffnesses: frequencies grow with its root.
     damping : float, optional
         Coefficient of dashpots between mass and ground, along x and y [N s/m].
     foot : float, optional
