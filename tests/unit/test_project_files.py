@@ -8,8 +8,11 @@ import runpy
 import tomllib
 from pathlib import Path
 
+import check_jsonschema
 import pytest
+import rattler_build
 import yaml
+from click.testing import CliRunner
 
 from stridula.version import __version__
 
@@ -54,6 +57,32 @@ def test_every_python_of_the_classifiers_is_tested():
     assert PROJECT["requires-python"] == f">={said[0]}"
 
 
+def misfits(schema: str, path: Path) -> str:
+    """Return the output on a file that does not fit its published schema, empty if it does."""
+    done = CliRunner().invoke(check_jsonschema.main, ["--builtin-schema", f"vendor.{schema}", str(path)])
+    assert done.exit_code in (0, 1), done.output
+    return done.output if done.exit_code else ""
+
+
+SCHEMAS = [
+    *[("github-workflows", path) for path in WORKFLOWS],
+    *[("github-issue-forms", path) for path in FORMS],
+    ("citation-file-format", ROOT / "CITATION.cff"),
+]
+
+
+@pytest.mark.parametrize(("schema", "path"), SCHEMAS, ids=lambda word: getattr(word, "name", word))
+def test_files_fit_their_published_schema(schema, path):
+    assert misfits(schema, path) == ""
+
+
+def test_a_workflow_with_a_wrong_key_does_not_fit(tmp_path):
+    """Negative control."""
+    text = WORKFLOWS[0].read_text(encoding="utf-8")
+    (tmp_path / "wrong.yml").write_text(text.replace("timeout-minutes:", "timeout:"), encoding="utf-8")
+    assert "timeout" in misfits("github-workflows", tmp_path / "wrong.yml")
+
+
 @pytest.mark.parametrize("path", FORMS, ids=lambda path: path.name)
 def test_forms_have_labelled_fields(path):
     form = read(path)
@@ -80,6 +109,17 @@ def test_the_recipe_requires_what_the_project_does():
     assert found == {(OF_CONDA.get(name, name), release) for name, release in needed}
     assert recipe["about"]["license_file"] == PROJECT["license-files"]
     assert recipe["about"]["license"] == PROJECT["license"]
+
+
+def test_the_recipe_is_rendered_by_its_builder(tmp_path):
+    text = (ROOT / "packaging" / "conda" / "recipe.yaml").read_text(encoding="utf-8")
+    (rendered,) = rattler_build.Stage0Recipe.from_yaml(text).render()
+    recipe = rendered.recipe
+    assert (recipe.package.name, str(recipe.package.version)) == ("stridula", __version__)
+    assert "numba >=0.62" in [str(one) for one in recipe.requirements.run]
+    # Negative control.
+    with pytest.raises(rattler_build.RecipeParseError):
+        rattler_build.Stage0Recipe.from_yaml(text.replace("requirements:", "requirement:"))
 
 
 def test_oldest_releases_are_the_lower_bounds():
