@@ -14,13 +14,14 @@ OLDEST := .venv-oldest/$(PROGRAMS)
 SMOKE := tests/unit/test_simulate.py tests/unit/test_scenarios.py tests/unit/test_files.py tests/unit/test_extras.py \
 	tests/unit/test_plot.py tests/hearing/test_wav.py tests/kernels/test_plain_python.py tests/physics/test_natural_frequencies.py
 
-.PHONY: help paper verify peers test smoke oldest lint docs dist bench convergence clean
+.PHONY: help paper verify peers test examples smoke oldest lint docs dist bench convergence clean
 
 help:
 	@echo "make paper        run every case of the paper into results/paper (sets itself up)"
 	@echo "make verify       run every case whose answer is known into results/verify; fails if one falls short"
 	@echo "make peers        the same systems in Siconos and here; needs Debian's python3-siconos, skipped without"
 	@echo "make test         lint, types, layers and tests (sets itself up)"
+	@echo "make examples     all code and commands of the documentation, all examples, the short form of every benchmark"
 	@echo "make smoke        a part of the tests, for other systems and Pythons"
 	@echo "make oldest       the same with the oldest dependencies that pyproject.toml allows, on Python 3.11 or 3.12"
 	@echo "make docs         build the documentation into docs/_build/html, warnings are errors"
@@ -54,8 +55,14 @@ lint: .venv/installed-dev
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
 
+# What describes and measures the package is tested apart from it.
+DESCRIBED := tests/examples tests/benchmarks
+
 test: lint
-	$(BIN)/python -m pytest --numprocesses 2
+	$(BIN)/python -m pytest --numprocesses 2 $(addprefix --ignore=,$(DESCRIBED))
+
+examples: .venv/installed-dev
+	$(BIN)/python -m pytest --numprocesses 2 $(DESCRIBED)
 
 smoke: .venv/installed-test
 	$(BIN)/python -m pytest --numprocesses 2 $(SMOKE)

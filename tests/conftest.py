@@ -22,6 +22,9 @@ threadpool_limits(1)
 # No test uses the cache of another one or of the user; processes inherit it.
 os.environ["STRIDULA_CACHE_DIR"] = "off"
 
+# Files that take about a minute come first, so that no process is left alone with one at the end.
+LONGEST = ("test_pages.py", "test_short_forms.py", "test_cases.py", "test_cases_in_space.py", "test_examples.py")
+
 # The same examples in every run: a test that fails must fail again.
 settings.register_profile("repeatable", derandomize=True, database=None)
 settings.load_profile("repeatable")
@@ -37,13 +40,14 @@ def pytest_configure_node(node):
 
 
 def pytest_collection_modifyitems(config, items):
-    """Shuffle files, and the tests in each, equally in all processes."""
+    """Shuffle files, and the tests in each, equally in all processes; the longest files come first."""
     files: dict[Path, list[pytest.Item]] = {}
     for item in items:
         files.setdefault(item.path, []).append(item)
     shuffled, groups = random.Random(config.option.order), list(files.values())
     for group in (groups, *groups):
         shuffled.shuffle(group)
+    groups.sort(key=lambda group: group[0].path.name not in LONGEST)
     items[:] = [item for group in groups for item in group]
 
 

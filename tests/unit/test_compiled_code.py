@@ -1,14 +1,14 @@
-"""Compiled code that several processes share: deleted with its sources, and changed by one process at a time."""
+"""Compiled code that several processes share: deleted with its sources, and stored by one process at a time."""
 
 from __future__ import annotations
 
 from types import SimpleNamespace
 
-import numba
 import pytest
-from numba.core import event
+from numba.core.caching import FunctionCache
 
-from stridula.integration.compiled_code import LOCK, STAMP, _OneAtATime, compile_one_at_a_time, forget_other_sources
+from stridula.integration import marches
+from stridula.integration.compiled_code import LOCK, STAMP, _locked, _storing_alone, forget_other_sources
 
 fcntl = pytest.importorskip("fcntl", reason="this system has no such locks")
 
@@ -27,43 +27,21 @@ def is_locked(folder) -> bool:
     return False
 
 
-def test_one_process_compiles_at_a_time(tmp_path):
-    """The lock is held while a function and those that it calls are compiled, and not afterwards."""
-    seen, folder = [], tmp_path / "compiled"
-    compile_one_at_a_time(kernel_in(folder))
-    (lock,) = [one for one in event._registered["numba:compile"] if getattr(one, "folder", None) == folder]
-
-    class Look(event.Listener):
-        def on_start(self, event):
-            seen.append(is_locked(folder))
-
-        on_end = on_start
-
-    @numba.njit
-    def inner(x):
-        return x + 1
-
-    @numba.njit
-    def outer(x):
-        return inner(x)
-
-    try:
-        assert isinstance(lock, _OneAtATime)
-        with event.install_listener("numba:compile", Look()):
-            assert outer(1) == 2
-    finally:
-        event.unregister("numba:compile", lock)
-    # The last one is seen after the lock is given back.
-    assert seen == [True, True, True, False]
-    assert not is_locked(folder)
+def test_one_process_stores_at_a_time(tmp_path):
+    """The lock of the folder is held while code is stored, and not afterwards."""
+    seen = []
+    store = _storing_alone(lambda cache, signature, code: seen.append((is_locked(tmp_path), signature, code)))
+    store(SimpleNamespace(cache_path=tmp_path), "a signature", "its code")
+    assert seen == [(True, "a signature", "its code")]
+    assert not is_locked(tmp_path)
+    # All that numba stores after the import of the march.
+    assert marches.PLAIN or FunctionCache.save_overload.__wrapped__
 
 
 def test_a_folder_that_cannot_be_made_has_no_lock(tmp_path):
     (tmp_path / "file").touch()
-    lock = _OneAtATime(tmp_path / "file" / "below")
-    lock.on_start(None)
-    lock.on_end(None)
-    assert lock.depth == 0
+    with _locked(tmp_path / "file" / "below"):
+        pass
 
 
 def test_code_of_other_sources_is_deleted_once(tmp_path):

@@ -129,5 +129,5 @@ def test_a_package_that_nobody_can_write_beside_is_imported_with_one_warning():
     folder, was_there = found.stdout.split()
     assert was_there == "True"
     assert not os.path.exists(folder)
-    assert found.stderr.count("compiled code cannot be kept") == 1
+    assert found.stderr.count("compiled code cannot be stored") == 1
     assert "set NUMBA_CACHE_DIR" in found.stderr

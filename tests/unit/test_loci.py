@@ -87,10 +87,16 @@ def test_every_change_of_stability_is_found_along_loci():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: st.root_loci(hoffmann_at, "friction", [1.0, 0.5]), "values must be at least 2 finite numbers"),
-        (lambda: st.root_loci(hoffmann_at, "friction", [1.0]), "values must be at least 2 finite numbers"),
-        (lambda: st.root_loci(hoffmann_at, "friction", [0.0, np.nan]), "values must be at least 2 finite numbers"),
-        (lambda: st.root_loci(hoffmann_at, "friction", "much"), "values must be at least 2 finite numbers"),
+        (
+            lambda: st.root_loci(hoffmann_at, "friction", [1.0, 0.5]),
+            "values must be at least 2 increasing finite numbers",
+        ),
+        (lambda: st.root_loci(hoffmann_at, "friction", [1.0]), "values must be at least 2 increasing finite numbers"),
+        (
+            lambda: st.root_loci(hoffmann_at, "friction", [0.0, np.nan]),
+            "values must be at least 2 increasing finite numbers",
+        ),
+        (lambda: st.root_loci(hoffmann_at, "friction", "much"), "values must be at least 2 increasing finite numbers"),
         (lambda: st.root_loci("squeal", "frition", [0.1, 0.2]), "did you mean 'friction'"),
         (
             lambda: st.root_loci(hoffmann_at, "frequency", [0.1, 0.2]),

@@ -10,14 +10,16 @@ import tempfile
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
 import numba
 from numba.core import event
+from numba.core.caching import FunctionCache
 
 # Files beside the compiled code: the digest of its sources, and the lock of the process that changes it.
-STAMP, LOCK = "stridula-kernels", "stridula-compiling"
+STAMP, LOCK = "stridula-kernels", "stridula-storing"
 
 
 def find_a_place() -> None:
@@ -66,13 +68,22 @@ def forget_other_sources(kernel: Any) -> None:
             stamp.write_text(sources.hexdigest(), encoding="ascii")
 
 
-def compile_one_at_a_time(kernel: Any) -> None:
-    """Let one process compile at a time, of all that keep their code where this kernel is kept.
+def store_one_at_a_time() -> None:
+    """Let one process at a time store compiled code.
 
-    Otherwise they would compile the same functions, and numba, which numbers the stored code of a function, could store
-    that of two types of arguments under one number.
+    numba numbers the stored code of a function, a number for each kind of arguments: two processes that store at the
+    same time could give two kinds the same number.
     """
-    event.register("numba:compile", _OneAtATime(_folder_of(kernel)))
+    FunctionCache.save_overload = _storing_alone(FunctionCache.save_overload)  # type: ignore[method-assign]
+
+
+def _storing_alone(save: Callable[..., None]) -> Callable[..., None]:
+    @wraps(save)
+    def save_overload(cache: FunctionCache, signature: Any, code: Any) -> None:
+        with _locked(Path(cache.cache_path)):
+            save(cache, signature, code)
+
+    return save_overload
 
 
 def _folder_of(kernel: Any) -> Path:
@@ -89,25 +100,6 @@ def _locked(folder: Path) -> Iterator[None]:
             folder.mkdir(parents=True, exist_ok=True)
             fcntl.flock(held.enter_context((folder / LOCK).open("a")), fcntl.LOCK_EX)
         yield
-
-
-class _OneAtATime(event.Listener):
-    """Listener that holds the lock of a folder from the start of a compilation to its end, nested ones included."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder, self.depth, self.held = folder, 0, ExitStack()
-
-    def on_start(self, event: event.Event) -> None:
-        """Wait until no other process compiles."""
-        self.depth += 1
-        if self.depth == 1:
-            self.held.enter_context(_locked(self.folder))
-
-    def on_end(self, event: event.Event) -> None:
-        """Let others compile."""
-        self.depth -= 1
-        if self.depth == 0:
-            self.held.close()
 
 
 @contextmanager

@@ -44,12 +44,12 @@ from ..lowering.packing import (
     waves_of,
 )
 from ..records.state import State
-from .compiled_code import compile_one_at_a_time, forget_other_sources
+from .compiled_code import forget_other_sources, store_one_at_a_time
 from .contact_solve import GaussSeidel
 
 if not PLAIN:
     forget_other_sources(march_single)
-    compile_one_at_a_time(march_single)
+    store_one_at_a_time()
 
 
 @dataclass(frozen=True)
