@@ -30,13 +30,16 @@ help:
 	@echo "make convergence  the tables of docs/convergence.rst and the figures there and in docs/trust.rst, in a quarter of an hour"
 	@echo "make clean        remove .venv and everything built"
 
+# Python compiles on import what is used: pip would compile all of every package, which takes as long as installing it.
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable
+
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[all]"
+	$(INSTALL) ".[all]"
 	@touch $@
 
 .venv/installed-%: .venv/installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[$*]"
+	$(INSTALL) ".[$*]"
 	@touch $@
 
 paper: .venv/installed
