@@ -95,9 +95,9 @@ def _locked(folder: Path) -> Iterator[None]:
     """Hold the lock of a folder, made if necessary; hold none where it cannot be written or the system has no locks."""
     with ExitStack() as held:
         with suppress(ImportError, OSError):
+            folder.mkdir(parents=True, exist_ok=True)
             import fcntl
 
-            folder.mkdir(parents=True, exist_ok=True)
             fcntl.flock(held.enter_context((folder / LOCK).open("a")), fcntl.LOCK_EX)
         yield
 
