@@ -32,7 +32,7 @@ EVERYWHERE = ("0.0.0.0", "::")
 ELSEWHERE = ("192.0.2.1", 9)
 # Longest time for which a thread keeps the interpreter while another waits [s].
 HANDED_OVER = 0.001
-COMPILING = "stridula: getting ready; the first start compiles, which takes about a minute"
+COMPILING = "stridula: getting ready; the first start compiles, which takes a minute or two"
 
 
 def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:

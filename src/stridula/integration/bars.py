@@ -16,7 +16,7 @@ from .watchers import Progress, Watcher
 
 # Arguments: amount done, total, and both in words.
 Show = Callable[[float, float, str], None]
-PREPARING, COMPILING = "preparing", "compiling, only once: about a minute"
+PREPARING, COMPILING = "preparing", "compiling, only once: a minute or two"
 # Cells of a bar written as text, and the least time between two updates [s].
 CELLS, SELDOM = 20, 0.1
 # Number of lines in a log for a whole computation.
