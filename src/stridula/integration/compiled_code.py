@@ -48,7 +48,7 @@ def forget_other_sources(kernel: Any) -> None:
     numba checks only the file of the called function: after an update of the package in place it would silently run
     old code.
     """
-    folder = _folder_of(kernel)
+    folder = Path(kernel._cache.cache_path)
     stamp, sources = folder / STAMP, hashlib.blake2b(digest_size=16)
     for path in sorted(Path(kernel.py_func.__code__.co_filename).parent.glob("*.py")):
         sources.update(path.read_bytes())
@@ -84,10 +84,6 @@ def _storing_alone(save: Callable[..., None]) -> Callable[..., None]:
             save(cache, signature, code)
 
     return save_overload
-
-
-def _folder_of(kernel: Any) -> Path:
-    return Path(kernel._cache.cache_path)
 
 
 @contextmanager
