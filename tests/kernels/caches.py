@@ -10,7 +10,7 @@ from numba.core.caching import _CacheLocator
 import stridula as st
 from stridula._kernels import march
 
-KERNEL = "march.march_single"
+KERNEL = "march.march"
 
 
 def incomplete_cache(folder: Path) -> Path:
@@ -19,5 +19,5 @@ def incomplete_cache(folder: Path) -> Path:
     st.load_scenario("squeal", {"duration": "1 ms"}).simulate()
     ignored = shutil.ignore_patterns("*.pyc", f"{KERNEL}-*")
     subfolder = _CacheLocator.get_suitable_cache_subpath(march.__file__)
-    shutil.copytree(march.march_single.stats.cache_path, folder / subfolder, ignore=ignored)
+    shutil.copytree(march.march.stats.cache_path, folder / subfolder, ignore=ignored)
     return folder

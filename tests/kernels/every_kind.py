@@ -1,7 +1,7 @@
 """March a little of every kind of run and print, as JSON, the signatures that were compiled and loaded.
 
 A separate program, `python -m kernels.every_kind`, that starts with the numba cache only. With `first` it makes four
-runs only, with `other type` these and a call that is not in the cache.
+runs only, with `other type` one and a call that is not in the cache.
 """
 
 from __future__ import annotations
@@ -109,7 +109,8 @@ def other_numbers() -> Iterator[Callable[[], object]]:
 
 
 def main(words: str) -> None:
-    made = [run() for run in islice(runs(), FIRST if words else None)]
+    count = {"": None, "first": FIRST, "other type": 1}[words]
+    made = [run() for run in islice(runs(), count)]
     functions = compiled_functions()
     if words == "other type":
         functions["friction.set_valued"](np.int8(0))

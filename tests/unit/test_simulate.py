@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import signal
 import tomllib
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -542,21 +542,8 @@ def test_a_march_that_had_to_be_compiled_first_is_the_same(name, monkeypatch):
     # The first of a process loads the kernel.
     _, warm = case.simulate(), case.simulate()
 
-    class Cold:
-        """A kernel that is never compiled yet."""
-
-        signatures = ()
-        stats = SimpleNamespace(cache_misses={"its types": 1})
-
-        def __init__(self, kernel):
-            self.kernel = kernel
-
-        def __call__(self, *arguments):
-            return self.kernel(*arguments)
-
-    monkeypatch.setattr(together_module, "Dispatcher", Cold)
-    warm_kernel = March.kernel
-    monkeypatch.setattr(March, "kernel", property(lambda march: Cold(warm_kernel.fget(march))))
+    monkeypatch.setattr(March, "is_compiled", False)
+    monkeypatch.setattr(together_module, "compilations", itertools.count().__next__)
     first = case.simulate()
     assert first.attrs["compile_time"] > 0.0 == warm.attrs["compile_time"]
     assert_same([first], warm)

@@ -12,7 +12,7 @@ from .block_rows import COMPLIANCE, DISPLACEMENT
 from .contact import SLIDING, STICKING
 from .direct import solve_states
 from .faces import displace, displace_freely, displace_in_space, own_compliance
-from .lanes import anywhere, choose, component, everywhere, held, hold, magnitude
+from .lanes import anywhere, choose, component, everywhere, held, hold, magnitude, placed
 from .modes import ENTRY, OPTIONS, PASTED
 from .solves import carried_by, forces_of_one, strayed
 from .space import free_of_own, is_second, put_second, solve_in_space
@@ -258,8 +258,9 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
     return made, error
 
 
-@numba.njit(fastmath=False, **ENTRY)
-def solve_closed(contacts, carried, sizes, timing):
+@numba.njit(**ENTRY)
+def solve_closed(place, contacts, carried, sizes, timing):
     """Solve the contacts of one run like a step of the march."""
-    start_from_last(contacts, carried, 1.0, sizes, 0, 0.0)
-    return solve_all(contacts, carried, 1.0, sizes, timing, 0, 1, 0.0)
+    zero, run, runs = placed(place)
+    start_from_last(contacts, carried, 1.0, sizes, run, zero)
+    return solve_all(contacts, carried, 1.0, sizes, timing, run, runs, zero)

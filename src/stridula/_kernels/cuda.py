@@ -39,7 +39,7 @@ def _is_ours(thing):
 _march = on_card(march)
 
 
-def _each(several):
+def _each(single, several):
     """Return the kernel for a kind of system, as in `march`."""
 
     @cuda.jit
@@ -47,9 +47,9 @@ def _each(several):
         """March `runs` runs, one in each thread."""
         run = cuda.grid(1)
         if run < runs:
-            _march(0.0, several, run, runs, parts)
+            _march(single, several, (run, runs), parts)
 
     return march_each
 
 
-march_each_single, march_each = _each(None), _each(True)
+march_each_single, march_each = _each(True, None), _each(None, True)

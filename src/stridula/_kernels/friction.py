@@ -13,7 +13,7 @@ from . import layout as at
 
 # Explicit, because a function inlined in the general march would inherit its permission to reorder sums, and would
 # round the distance from an anchor, slip + (material - anchor), like an abscissa.
-STRICT: dict[str, Any] = {"cache": True, "fastmath": False, "error_model": "numpy"}
+STRICT: dict[str, Any] = {"cache": True, "fastmath": False, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 
 @numba.njit(**STRICT)

@@ -12,6 +12,15 @@ from numba.core import types
 from numba.extending import overload
 
 
+def placed(place):
+    """Return a zero of the type of the numbers of a run, the first run and the number of columns.
+
+    Compiled code marches a single run if `place` is None, and a vector of runs if it is True; elsewhere it is one run
+    of several, and their number.
+    """
+    return 0.0, place[0], place[1]
+
+
 def load(rows, k, row, run):
     """Return a row of block `k`, of the runs from `run` on."""
     return rows[k, row, run]
@@ -131,6 +140,14 @@ def _is_number(*kinds):
 
 # One run has its numbers in blocks as wide as a vector.
 WIDTH, SHIFT = 8, 3
+
+
+@overload(placed)
+def _placed(place):
+    # Constants, so that the compiler knows all strides, but not by their types: each value would be a kind of its own.
+    if isinstance(place, types.NoneType):
+        return lambda place: (0.0, types.int64(0), types.int64(1))
+    return lambda place: (spread(0.0), types.int64(0), types.int64(WIDTH))
 
 
 @overload(entry)

@@ -11,7 +11,7 @@ from . import layout as at
 from .block_rows import CONTACTS, SINE
 from .bookkeeping import credit, stored_in_contacts
 from .coupled import energy_of
-from .lanes import anywhere, choose, everywhere, hold, magnitude, spread
+from .lanes import anywhere, choose, everywhere, hold, magnitude, placed
 from .leaving import end, leave
 from .loads import change_loads, credit_loads, differ
 from .modes import ENTRY, PASTED
@@ -20,7 +20,6 @@ from .several import keep_many, touch_many
 from .single import keep_one, touch_one
 from .trying import complete_one, gap_of
 from .turning import credit_turning, turn_bodies
-from .vectors import LANES
 
 
 @numba.njit(**PASTED)
@@ -52,15 +51,16 @@ def record_row(parts, sample, n, run, runs, zero):
         record_contact(i, contacts.sums, state.carried, height, steps, timing.step, record, sample, run, runs, zero)
 
 
-@numba.njit(fastmath=False, **ENTRY)
-def march(zero, several, run, runs, parts):
+@numba.njit(**ENTRY)
+def march(single, several, place, parts):
     """March through the samples of the records, or until all runs have ended.
 
     Quantities of a run have a column for each run; several numbers of a kind have groups of columns. `zero` has the
     type of the numbers of a run: a number, or a vector of several runs; `run` is the first of these runs, `runs` the
-    number of columns. `several` is None for a single contact between bodies of uncoupled modes that do not turn: only
-    the steps of the given kind are compiled.
+    number of columns. All three follow from `place`, as in `lanes.placed`. `several` is None for a single contact
+    between bodies of uncoupled modes that do not turn, else `single` is None: only the steps of one kind are compiled.
     """
+    zero, run, runs = placed(place)
     sizes, timing, signals = parts.sizes, parts.timing, parts.imposed.signals
     begin(parts, run, zero)
     ended, completed = zero, zero
@@ -70,25 +70,25 @@ def march(zero, several, run, runs, parts):
         begin_row(parts, run, zero)
         for i in range(timing.steps_per_sample):
             change_loads(parts, n, run, runs, zero)
-            if several is None:
+            if single is not None:
                 loop = (touch, pending, sine, advance)
                 free, w, touch, leaves, why = touch_one(parts, n, loop, ended, run, runs, zero)
                 sine = 2 - sine
-            else:
+            if several is not None:
                 turn_bodies(parts, n, run, runs, zero)
                 leaves, why = touch_many(parts, n, ended, run, runs, zero)
             if anywhere(leaves > 0.5):
                 ended, completed = leave(ended, completed, leaves, why, sample, parts.state, run, zero)
                 if everywhere(ended > 0.0):
                     break
-            if several is None:
+            if single is not None:
                 advance = keep_one(parts, n, free, w, touch, run, runs, zero)
                 following = i + 1 < timing.steps_per_sample
                 pending = following and not differ(signals, n + 1, sizes.loads, run, runs, zero)
                 if not pending:
                     done = complete_one(parts.modes, parts.paths, touch, sine, run, zero)
                     credit(parts.state.energies, done[0], done[1], done[2] * advance, run, zero)
-            else:
+            if several is not None:
                 keep_many(parts, n, run, runs, zero)
                 credit_turning(parts, run, zero)
             if not pending:
@@ -108,33 +108,3 @@ def march(zero, several, run, runs, parts):
                 break
         record_row(parts, sample, n, run, runs, zero)
     end(parts, ended, completed, run, zero)
-
-
-@numba.njit(**ENTRY)
-def march_single(parts):
-    """March one run with a single contact."""
-    march(0.0, None, 0, 1, parts)
-
-
-@numba.njit(**ENTRY)
-def march_several(parts):
-    """March one run of any kind."""
-    march(0.0, True, 0, 1, parts)
-
-
-@numba.njit(**ENTRY)
-def march_single_abreast(parts):
-    """March `LANES` runs with a single contact side by side."""
-    march(spread(0.0), None, 0, LANES, parts)
-
-
-@numba.njit(**ENTRY)
-def march_several_abreast(parts):
-    """March `LANES` runs of any kind side by side."""
-    march(spread(0.0), True, 0, LANES, parts)
-
-
-def march_one_by_one(runs, several, parts):
-    """March runs one after the other, in plain Python without compilation."""
-    for run in range(runs):
-        march(0.0, several, run, runs, parts)

@@ -36,14 +36,16 @@ from .block_rows import (
 )
 from .lanes import entry, fused, load, spread, store, total
 
-# No reference counting: arrays come from Python and stay. No wrappers for callers in C: there are none.
+# No reference counting: arrays come from Python and stay.
 SHARED: dict[str, Any] = {"cache": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
+# No wrapper for callers in Python, which takes a sixth of the compilation: called from there, these functions crash.
+INNER: dict[str, Any] = {**SHARED, "no_cpython_wrapper": True, "fastmath": False}
 # Strict arithmetic: a step is the same to the last bit wherever it is completed.
-OPTIONS: dict[str, Any] = {**SHARED, "forceinline": True, "fastmath": False}
+OPTIONS: dict[str, Any] = {**INNER, "forceinline": True}
 # For functions that mainly call others, inlined as Python: compiled apart, all that they call would be optimised again.
-PASTED: dict[str, Any] = {**SHARED, "inline": "always", "fastmath": False}
+PASTED: dict[str, Any] = {**INNER, "inline": "always"}
 # For functions called from Python, which let other threads run.
-ENTRY: dict[str, Any] = {**SHARED, "nogil": True}
+ENTRY: dict[str, Any] = {**SHARED, "nogil": True, "fastmath": False}
 
 
 @numba.njit(**OPTIONS)

@@ -75,9 +75,9 @@ class CudaMarch(March):
         return self.given, 1, self.given
 
     @property
-    def kernel(self) -> Any:
-        """None, as nothing is compiled for the CPU."""
-        return None
+    def is_compiled(self) -> bool:
+        """True, as nothing is compiled for the processor."""
+        return True
 
     @property
     def states(self) -> list[State]:
@@ -108,7 +108,7 @@ class CudaMarch(March):
         modes, paths, contacts, turning, carried, probes = self.there
         parts = Parts(self.layout.sizes, self.timing, modes, paths, contacts, turning, carried, imposed, probes, filled)
         grid = -(-self.runs // self.threads_per_block)
-        kernel = march_each_single if self.several is None else march_each
+        kernel = march_each_single if self.is_single else march_each
         kernel[grid, self.threads_per_block](self.runs, parts)
         for array, output in zip(filled, records, strict=True):
             array.copy_to_host(output)

@@ -56,8 +56,7 @@ def forces_of(
         columns(side_by_side([now.ravel()])),
         columns(aligned(count * at.SUMS, 1)),
     )
-    solve_closed(
-        contacts, columns(side_by_side([carried.ravel()])), sizes, Timing(1, step, solve.tolerance, solve.sweeps)
-    )
+    place, timing = (0, 1) if PLAIN else None, Timing(1, step, solve.tolerance, solve.sweeps)
+    solve_closed(place, contacts, columns(side_by_side([carried.ravel()])), sizes, timing)
     now = contacts.now.reshape(count, at.IN_STEP)
     return np.asarray(now[:, [at.NORMAL_NOW, at.TANGENTIAL_NOW]])

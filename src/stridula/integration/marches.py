@@ -5,20 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
+import numba
 import numpy as np
 
 from .._kernels import layout as at
 from .._kernels.block_rows import CONTACTS
-from .._kernels.march import (
-    march_one_by_one,
-    march_several,
-    march_several_abreast,
-    march_single,
-    march_single_abreast,
-)
+from .._kernels.march import march
 from .._kernels.parts import Carried, Contacts, Modes, Parts, Paths, Probes, Records, Timing, Turning
 from .._kernels.parts import Imposed as ImposedOnRuns
 from .._kernels.turning import OF_CONTACT
@@ -48,7 +43,7 @@ from .compiled_code import forget_other_sources, store_one_at_a_time
 from .contact_solve import GaussSeidel
 
 if not PLAIN:
-    forget_other_sources(march_single)
+    forget_other_sources(march)
     store_one_at_a_time()
 
 
@@ -234,19 +229,26 @@ class March:
         )
 
     @property
-    def kernel(self) -> Any:
-        """The function that marches: a compiled one, or another callable if nothing is compiled for the processor."""
-        if PLAIN:
-            return partial(march_one_by_one, self.runs, self.several)
-        if self.several is None:
-            return march_single if self.runs == 1 else march_single_abreast
-        return march_several if self.runs == 1 else march_several_abreast
+    def places(self) -> list[Any]:
+        """Places of the runs, as in `lanes.placed`: of all in a call, or of each in turn in plain Python."""
+        return [(run, self.runs) for run in range(self.runs)] if PLAIN else [None if self.runs == 1 else True]
 
     @property
-    def several(self) -> bool | None:
-        """None for a single contact without coupled modes and turning bodies, as in `march`."""
+    def is_single(self) -> bool:
+        """Whether there is a single contact, without coupled modes and turning bodies."""
         sizes = self.layout.sizes
-        return None if sizes.contacts == 1 and not sizes.coupled and not len(self.layout.turning) else True
+        return sizes.contacts == 1 and not sizes.coupled and not len(self.layout.turning)
+
+    @property
+    def kind(self) -> tuple[bool | None, bool | None]:
+        """The arguments of `march` that select the steps."""
+        return (True, None) if self.is_single else (None, True)
+
+    @property
+    def is_compiled(self) -> bool:
+        """Whether nothing has to be compiled, or loaded, for a march of this kind."""
+        types = tuple(map(numba.typeof, (*self.kind, self.places[0])))
+        return PLAIN or types in [signature[:3] for signature in march.signatures]
 
     @property
     def states(self) -> list[State]:
@@ -311,7 +313,13 @@ class March:
     def _march(self, imposed: ImposedOnRuns, records: Records) -> None:
         """March through a chunk and fill `records`."""
         parts = self.modes, self.paths, self.contacts, self.turning, self.carried, imposed, self.probes, records
-        self.kernel(Parts(self.layout.sizes, self.timing, *parts))
+        for place in self.places:
+            march(*self.kind, place, Parts(self.layout.sizes, self.timing, *parts))
+
+
+def compilations() -> int:
+    """Return the number of kinds of the march that this process has compiled."""
+    return 0 if PLAIN else sum(march.stats.cache_misses.values())
 
 
 def _beside(imposed: Sequence[Array]) -> Array:

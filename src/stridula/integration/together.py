@@ -5,12 +5,10 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Hashable, Sequence
 
-from numba.core.dispatcher import Dispatcher
-
 from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
 from .interrupts import DeferredInterrupt
-from .marches import Imposed, March
+from .marches import Imposed, March, compilations
 from .run import Run
 from .watchers import Progress, Watcher
 
@@ -53,12 +51,11 @@ def march_together(runs: Sequence[Run], march: March, watchers: Sequence[Watcher
 
 def _compiled(runs: Sequence[Run], march: March) -> float:
     """Compile the kernel, or load it from disk, before the clock starts; return the time of compilation [s]."""
-    kernel = march.kernel
-    if not isinstance(kernel, Dispatcher) or kernel.signatures:
+    if march.is_compiled:
         return 0.0
-    began = clock.perf_counter()
+    began, before = clock.perf_counter(), compilations()
     march.copy().advance(_imposed(runs, 0, 1), 1)
-    return clock.perf_counter() - began if kernel.stats.cache_misses else 0.0
+    return clock.perf_counter() - began if compilations() > before else 0.0
 
 
 def _imposed(runs: Sequence[Run], first_sample: int, samples: int) -> list[Imposed]:
