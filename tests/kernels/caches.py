@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
+from numba import types
 from numba.core.caching import _CacheLocator
 
 import stridula as st
@@ -14,10 +15,14 @@ KERNEL = "march.march"
 
 
 def incomplete_cache(folder: Path) -> Path:
-    """Copy the compiled code except `KERNEL` to where numba looks for it if NUMBA_CACHE_DIR is this folder."""
-    # Compiled now if it is not stored yet.
+    """Copy the compiled code to where numba looks for it if NUMBA_CACHE_DIR is this folder, without one march.
+
+    It is that of a single contact, which is compiled now if it is not stored yet.
+    """
     st.load_scenario("squeal", {"duration": "1 ms"}).simulate()
-    ignored = shutil.ignore_patterns("*.pyc", f"{KERNEL}-*")
+    stored = march.march._cache._cache_file._load_index()
+    (single,) = [file for (signature, *_), file in stored.items() if signature[1:3] == (types.none, types.none)]
+    ignored = shutil.ignore_patterns("*.pyc", single)
     subfolder = _CacheLocator.get_suitable_cache_subpath(march.__file__)
     shutil.copytree(march.march.stats.cache_path, folder / subfolder, ignore=ignored)
     return folder

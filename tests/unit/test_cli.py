@@ -358,7 +358,7 @@ def terminate(*arguments, **fields):
 
 @pytest.mark.parametrize("stop", [interrupt, terminate])
 def test_ctrl_c_and_sigterm_keep_what_was_recorded(stridula, monkeypatch, stop):
-    monkeypatch.setattr(rich_bars.Progress, "update", stop)
+    monkeypatch.setattr(rich_bars.RichBar, "show", stop)
     code, out, err = stridula("run", "squeal", "--duration", "0.25", "--out", "part.nc")
     assert code == 130
     assert err.startswith("stridula: interrupted at t = ")
@@ -415,7 +415,7 @@ def test_a_failed_run_is_drawn_as_far_as_it_went(stridula, monkeypatch, tmp_path
 
 
 def test_an_interrupted_run_reports_that_nothing_was_drawn(stridula, monkeypatch, tmp_path):
-    monkeypatch.setattr(rich_bars.Progress, "update", interrupt)
+    monkeypatch.setattr(rich_bars.RichBar, "show", interrupt)
     code, _, err = stridula("run", "squeal", "--duration", "0.25", "--plot", "part.png")
     assert (code, err.endswith("; no figure was drawn\n")) == (130, True)
     assert list(tmp_path.iterdir()) == []
@@ -643,7 +643,7 @@ def test_a_sweep_needs_a_file_and_a_measure(stridula, option):
 def test_ctrl_c_in_a_sweep_reports_saved_parts_and_the_same_command_resumes(stridula, monkeypatch, tmp_path):
     many = (*SWEEP, "--vary", "friction=0.2:2:100")
     with monkeypatch.context() as patch:
-        patch.setattr(rich_bars.Progress, "update", interrupt)
+        patch.setattr(rich_bars.RichBar, "show", interrupt)
         code, out, err = stridula(*many)
     assert (code, out) == (130, "")
     found = re.fullmatch(

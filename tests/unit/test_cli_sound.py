@@ -310,7 +310,7 @@ def test_an_interrupted_run_reports_that_no_sound_was_written(stridula, monkeypa
     def interrupt(*arguments, **fields):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(rich_bars.Progress, "update", interrupt)
+    monkeypatch.setattr(rich_bars.RichBar, "show", interrupt)
     code, _, err = stridula("run", "squeal", "--duration", "0.25", "--wav", "part.wav")
     assert (code, err.endswith("; no sound was written\n")) == (130, True)
     assert not list(tmp_path.iterdir())

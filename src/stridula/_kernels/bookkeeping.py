@@ -19,7 +19,7 @@ def add(array, row, run, value, zero):
 
 @numba.njit(**OPTIONS)
 def share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, run, zero):
-    """Divide the step before among the states of contact `i` and count this step; return its closed share."""
+    """Divide the last step among the states of contact `i` and count this one; return the closed share of this one."""
     base, tally = i * at.CARRIED, i * at.SUMS
     _, _, status, jammed = touch
     free_gap, free_slip, gap, _ = moved

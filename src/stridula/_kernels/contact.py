@@ -168,8 +168,8 @@ def slide_as_prescribed(gap, slip, strayed, w_nn, law, laws, i, before, step):
 def velocity_at(slip, before, step):
     """Return the slip velocity at the middle of the last step and this one, of second order.
 
-    Of all second-order combinations of three slips it damps a sawtooth from step to step best, which the mean would not
-    see: under stiff friction the sawtooth falls to a third in each step.
+    The mean would not see a sawtooth from step to step. Among the second-order combinations of three slips this one
+    damps it best: under stiff friction it falls to a third in each step.
     """
     return (9.0 * slip + 6.0 * before[1] + before[2]) / (16.0 * step)
 

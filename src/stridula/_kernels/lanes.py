@@ -144,7 +144,7 @@ WIDTH, SHIFT = 8, 3
 
 @overload(placed)
 def _placed(place):
-    # Constants, so that the compiler knows all strides, but not by their types: each value would be a kind of its own.
+    # Constants let the compiler know all strides; converted, they have no literal types, each of which is a kind apart.
     if isinstance(place, types.NoneType):
         return lambda place: (0.0, types.int64(0), types.int64(1))
     return lambda place: (spread(0.0), types.int64(0), types.int64(WIDTH))

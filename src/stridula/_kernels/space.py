@@ -147,10 +147,11 @@ def solve_along(c, s, free, law, laws, number, before, let_go, step):
 
 @numba.njit(**STRICT)
 def carried_on_by(before, let_go, first, second):
-    """Return the share of the last two slips in the velocity that friction is along, in units of a ninth of a slip.
+    """Return the share of the last two slips in the velocity along which friction acts, in units of a ninth of a slip.
 
-    Contacts that come to rest together may find no forces with it; after some sweeps friction is therefore along the
-    slip alone. So it is where a contact begins to slide against its last slips: it was at rest, without a direction.
+    Contacts that come to rest together may have no consistent forces with this share; after some sweeps friction
+    therefore acts along the slip alone. The same holds where a contact begins to slide against its last slips: it was
+    at rest, without a direction.
     """
     moved, swerved = 6.0 * before[1][0] + before[2][0], 6.0 * before[1][1] + before[2][1]
     begins = before[0] < SLIDING - 0.5 and first * moved + second * swerved <= 0.0

@@ -5,6 +5,7 @@ import { paintAxes } from "./axes.js";
 const POINTS = 16;
 const HELD = 5000; // Time without a drop-out after which a suspended map continues [ms].
 const QUIET = 700; // Time without a change after which a map is computed [ms].
+const PATIENCE = 5000; // Time without a row after which the wait is explained [ms].
 // Signs that distinguish regimes without colours.
 const SIGNS = { "stable sliding": "", sticking: "–", "stick-slip": "/", squeal: "~", judder: "×", "off the track": "·" };
 
@@ -113,9 +114,12 @@ export class RegimeMap {
     this.words.textContent = "computing";
     this.pending = [a, b];
     this.say({ type: "map", x: axis(a), y: axis(b), points: POINTS });
+    const wait = "computing the first row; the first map of all compiles code, which takes up to a minute";
+    this.timer = setTimeout(() => (this.words.textContent = wait), PATIENCE);
   }
 
   take({ row, regimes }) {
+    clearTimeout(this.timer);
     this.cells.set(row, regimes);
     this.words.textContent = `${Math.round((100 * this.cells.size) / POINTS)} % computed`;
   }
