@@ -14,7 +14,7 @@ OLDEST := .venv-oldest/$(PROGRAMS)
 SMOKE := tests/unit/test_simulate.py tests/unit/test_scenarios.py tests/unit/test_files.py tests/unit/test_extras.py \
 	tests/unit/test_plot.py tests/hearing/test_wav.py tests/kernels/test_plain_python.py tests/physics/test_natural_frequencies.py
 
-.PHONY: help paper verify peers test examples smoke oldest lint compiled docs dist bench convergence clean
+.PHONY: help paper verify peers test examples smoke oldest lint docs dist bench convergence clean
 
 help:
 	@echo "make paper        run every case of the paper into results/paper (sets itself up)"
@@ -62,11 +62,11 @@ lint: .venv/installed-dev
 DESCRIBED := tests/examples tests/benchmarks
 
 # Every kind of march, once: processes of the tests that need one at the same time would each compile it.
-compiled: .venv/installed-dev
-	PYTHONPATH=tests $(BIN)/python -m kernels.every_kind first > .venv/compiled
+compiled-%: .venv/installed-dev
+	PYTHONPATH=tests $(BIN)/python -m kernels.every_kind $* > .venv/$@
 
 test: .venv/installed-dev
-	$(MAKE) --jobs=2 --output-sync=target lint compiled
+	$(MAKE) --jobs=3 --output-sync=target compiled-alone compiled-abreast lint
 	$(BIN)/python -m pytest --numprocesses 2 $(addprefix --ignore=,$(DESCRIBED))
 
 examples: .venv/installed-dev

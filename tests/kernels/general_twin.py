@@ -17,6 +17,7 @@ from types import SimpleNamespace
 
 import numpy as np
 from scipy.linalg import expm
+from scipy.linalg.lapack import dgesv
 from scipy.optimize import brentq, root
 
 import stridula as st
@@ -151,6 +152,12 @@ def velocity_of(slip, before, h):
     return (9 * slip + 6 * before.last_slip + before.earlier_slip) / (16 * h)
 
 
+def solved(left, right):
+    """Solution of a few equations, not a number where they are singular; most of the time is that of this function."""
+    *_, solution, singular = dgesv(left, right)
+    return np.full(len(right), np.nan) if singular else solution
+
+
 def turned(gap, slip, own, before, let_go):
     """Whether the slip of a contact ends within the step: then (holds, normal, tangential), else None.
 
@@ -167,7 +174,7 @@ def turned(gap, slip, own, before, let_go):
     if farther * before.last_slip >= 0:
         return None
     share = before.last_slip / (before.last_slip - farther)
-    rest = np.linalg.solve(own, [-gap, before.last_slip - slip]) * [1, -1]
+    rest = solved(own, [-gap, before.last_slip - slip]) * [1, -1]
     holds = abs(rest[1]) <= held_up_to(before.law, not let_go) * rest[0]
     return holds, *(share * on + (1 - share) * (rest if holds else back))
 
@@ -213,7 +220,7 @@ def solve_contacts(gaps, slips, strayed, w, before, h, guess=None, let_go=()):
                     break
                 outcome.append((STICKING if turn[0] else SLIDING, normal, tangential))
                 continue
-            hold = np.linalg.solve(own, [-gap, -slip - strayed[i]])
+            hold = solved(own, [-gap, -slip - strayed[i]])
             holds = (
                 abs(hold[1]) <= held_up_to(before[i].law, before[i].status == STICKING and i not in let_go) * hold[0]
             )
@@ -286,10 +293,7 @@ def forces_at(ratios, combination, gaps, slips, strayed, w, before, h):
                 ratio = kind * curve(laws[i], max(kind * speeds.get(i, 0.0), 0.0))
             left[2 * i + 1] = 0.0
             left[2 * i + 1, 2 * i : 2 * i + 2] = ratio, 1.0
-        try:
-            return np.linalg.solve(left, right)
-        except np.linalg.LinAlgError:
-            return np.full(len(w), np.nan)
+        return solved(left, right)
 
     def error(velocities):
         forces = given(velocities)
@@ -318,9 +322,9 @@ def forces_at(ratios, combination, gaps, slips, strayed, w, before, h):
     unit = np.abs(free).max() + max(abs(before[i].last_slip) / h for i in curved) + 1e-12
     for start in ([before[i].last_slip / h for i in curved], free):
         y = np.arcsinh(np.array(start) / scales)
-        solved = root(lambda y: error(scales * np.sinh(y)) / unit, y, method="hybr", tol=1e-15)
-        if np.abs(solved.fun).max() < 1e-10:
-            return given(scales * np.sinh(solved.x))
+        found = root(lambda y: error(scales * np.sinh(y)) / unit, y, method="hybr", tol=1e-15)
+        if np.abs(found.fun).max() < 1e-10:
+            return given(scales * np.sinh(found.x))
     return None
 
 

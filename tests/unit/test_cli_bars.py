@@ -27,7 +27,7 @@ def said(monkeypatch):
         words.append(fields["words"])
         show(self, *arguments, **fields)
 
-    monkeypatch.setattr(rich_bars.RichBar, "show", update)
+    monkeypatch.setattr(rich_bars.Progress, "update", update)
     return words
 
 
