@@ -39,8 +39,8 @@ const leaves = {
   link: () => scene.read("#case=belt"),
 };
 scene.set({ case: "judder" });
-on.pointerdown({ button: 0, pointerId: 1, offsetX: 50, offsetY: 50 });
-on.pointermove({ offsetX: 50, offsetY: 75 });
+on.pointerdown({ button: 0, pointerId: 1, clientX: 50, clientY: 50 });
+on.pointermove({ clientX: 50, clientY: 75 });
 const passes = () => new Promise((then) => setTimeout(then, 150));
 await passes();
 const pressed = told.at(-1).overrides;

@@ -209,6 +209,8 @@ def test_bodies_are_dragged_by_hand_and_return(browsing):
     )
     page.mouse.move(x, y)
     page.mouse.down()
+    # As a notice above the picture moves it.
+    page.evaluate("document.querySelector('main').style.marginTop = '60px'")
     for step in range(30):
         page.mouse.move(x + 5 * step, y + 2 * step)
         page.wait_for_timeout(20)

@@ -84,8 +84,9 @@ export class Bow {
     return played(this.controls.numbers(), this.controls.values ?? {});
   }
 
-  #place({ offsetX, offsetY }) {
-    return [offsetX / this.canvas.clientWidth, offsetY / this.canvas.clientHeight];
+  // Where the hand is in the window: notices that come and go move the canvas below it.
+  #place({ clientX, clientY }) {
+    return [clientX / this.canvas.clientWidth, clientY / this.canvas.clientHeight];
   }
 
   #grab(event) {
