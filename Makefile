@@ -33,22 +33,21 @@ help:
 # Python compiles on import what is used: pip would compile all of every package, which takes as long as installing it.
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable
 
-.venv/installed: pyproject.toml
+.venv/created:
 	$(PYTHON) -m venv .venv
-	$(INSTALL) ".[all]"
 	@touch $@
 
-.venv/installed-%: .venv/installed
+.venv/installed-%: pyproject.toml | .venv/created
 	$(INSTALL) ".[$*]"
 	@touch $@
 
-paper: .venv/installed
+paper: .venv/installed-all
 	$(BIN)/stridula paper
 
-verify: .venv/installed
+verify: .venv/installed-all
 	$(BIN)/stridula verify
 
-peers: .venv/installed
+peers: .venv/installed-all
 	$(BIN)/python benchmarks/against_siconos.py
 	$(BIN)/python benchmarks/cones.py
 
@@ -91,10 +90,10 @@ docs: .venv/installed-docs
 dist: .venv/installed-dev
 	$(BIN)/python packaging/check_distributions.py
 
-bench: .venv/installed
+bench: .venv/installed-all
 	$(BIN)/python benchmarks/suite.py
 
-convergence: .venv/installed
+convergence: .venv/installed-all
 	$(BIN)/python examples/papers/laulagnet_2011/convergence.py
 	$(BIN)/python examples/papers/laulagnet_2011/convergence_of_statistics.py
 	$(BIN)/python examples/papers/laulagnet_2011/first_contacts.py

@@ -23,7 +23,10 @@ threadpool_limits(1)
 os.environ["STRIDULA_CACHE_DIR"] = "off"
 
 # Files that take about a minute come first, so that no process is left alone with one at the end.
-LONGEST = ("test_pages.py", "test_short_forms.py", "test_cases.py", "test_cases_in_space.py", "test_examples.py")
+LONGEST = (
+    *("test_pages.py", "test_short_forms.py", "test_examples.py", "test_page.py", "test_page_features.py"),
+    *("test_cases.py", "test_cases_in_space.py", "test_general_march.py"),
+)
 
 # The same examples in every run: a test that fails must fail again.
 settings.register_profile("repeatable", derandomize=True, database=None)

@@ -23,7 +23,10 @@ MISSED = (
 
 @pytest.fixture(scope="module")
 def runs():
-    return Runs()
+    """Runs of the paper, with relaxations under 3 of the 24 loads: the claim about them is one of those missed."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pressure, "PRESSURES", pressure.PRESSURES[::8])
+        yield Runs()
 
 
 @pytest.mark.parametrize("claim", CLAIMS, ids=lambda claim: f"{claim.section} {claim.claim}")
