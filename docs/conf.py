@@ -1,7 +1,7 @@
 """Sphinx settings, and what is written before each build: the API page, tables, and the paper from end to end.
 
-Everything written lies in ``_generated``, ``gallery`` or ``tutorials`` or is ``api.rst``; none of it is kept under
-version control.
+Everything written lies in ``_generated``, ``gallery`` or ``tutorials`` or is ``api.rst`` or ``api-modules.rst``; none
+of it is kept under version control.
 """
 
 from __future__ import annotations
@@ -216,17 +216,28 @@ def plain(text: str) -> str:
 
 
 def api_page() -> str:
-    """Return the page of all public names, grouped like the folders."""
+    """Return the page of the public names of the package itself, grouped like the folders."""
     parts = [
         "API",
         "===",
         "",
-        "All public names, grouped like the folders of the package. Those of the first groups are attributes of",
-        "``stridula`` itself.",
+        "Attributes of ``stridula`` itself, grouped like the folders of the package. :doc:`api-modules` lists the",
+        "public names of its modules.",
+        "",
+        ".. toctree::",
+        "   :hidden:",
+        "",
+        "   api-modules",
         "",
     ]
     for home, names in stridula._HOME.items():
         parts += api_group(HOMES.get(home, home), f"stridula.{home}", "stridula", names)
+    return "\n".join(parts)
+
+
+def api_modules_page() -> str:
+    """Return the page of the public names of modules."""
+    parts = ["API of modules", "==============", ""]
     for module, title, names in MODULES:
         own = [name for name in names or import_module(module).__all__ if name not in stridula.__all__]
         if own:
@@ -505,9 +516,10 @@ def verification_cells(row: dict[str, Any]) -> list[str]:
 
 def setup(app: Sphinx) -> None:
     """Write what is generated, before Sphinx looks for pages."""
-    page = api_page()
-    drop_stale_stubs(page)
-    write(HERE / "api.rst", page)
+    pages = {"api": api_page(), "api-modules": api_modules_page()}
+    drop_stale_stubs("\n".join(pages.values()))
+    for name, text in pages.items():
+        write(HERE / f"{name}.rst", text)
     write(GENERATED / "variables.rst", variables_table())
     write(GENERATED / "equilibrium.rst", equilibrium_table())
     write_pages(GENERATED / "keys", scenario_pages())

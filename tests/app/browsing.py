@@ -2,13 +2,41 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
+import os
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
 from typing import Any
+
+import pytest
 
 from .serving import WAIT, Server
 
+CHROMIUM = Path("/usr/bin/chromium")
+MISSING = f"{CHROMIUM} must be there to test the page in a browser: apt-get install chromium"
+ARGUMENTS = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-background-networking",
+    "--disable-component-update",
+)
 STALL = "GPU stall due to ReadPixels"
 PLAYS = "window.stridula && stridula.stats.samples > 4800"
+
+
+@contextmanager
+def launched(*more: str) -> Iterator[Any]:
+    """Start a browser with more arguments."""
+    if not CHROMIUM.exists():
+        if os.environ.get("CI"):
+            pytest.fail(MISSING, pytrace=False)
+        pytest.skip(MISSING)
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=[*ARGUMENTS, *more])
+        yield browser
+        browser.close()
 
 
 class Browsing(AbstractContextManager["Browsing"]):

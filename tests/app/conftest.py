@@ -2,26 +2,14 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
-from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-from .browsing import Browsing
+from .browsing import Browsing, launched
 from .conversation import Conversation, conversation
 from .serving import Server
-
-CHROMIUM = Path("/usr/bin/chromium")
-MISSING = f"{CHROMIUM} must be there to test the page in a browser: apt-get install chromium"
-ARGUMENTS = (
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-background-networking",
-    "--disable-component-update",
-)
 
 
 @pytest.fixture(scope="session")
@@ -48,21 +36,6 @@ def talk(server) -> Iterator[Conversation]:
     with conversation(server) as opened:
         opened.until("hello")
         yield opened
-
-
-@contextmanager
-def launched(*more: str) -> Iterator[Any]:
-    """Start a browser with more arguments."""
-    if not CHROMIUM.exists():
-        if os.environ.get("CI"):
-            pytest.fail(MISSING, pytrace=False)
-        pytest.skip(MISSING)
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=[*ARGUMENTS, *more])
-        yield browser
-        browser.close()
 
 
 @pytest.fixture(scope="module")

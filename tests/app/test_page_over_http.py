@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from .browsing import Browsing, plays_on, stats, until
-from .conftest import launched
+from .browsing import Browsing, launched, plays_on, stats, until
 from .serving import Server
 
 NAME = "bench"

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from .browsing import Browsing, until
-from .conftest import launched
+from .browsing import Browsing, launched, until
 from .test_page_access import grave
 
 SOFTWARE = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
