@@ -153,9 +153,11 @@ def velocity_of(slip, before, h):
 
 
 def solved(left, right):
-    """Solution of a few equations, not a number where they are singular; most of the time is that of this function."""
+    """Solution of a few equations, as by np.linalg.solve, which takes several times as long for so few."""
     *_, solution, singular = dgesv(left, right)
-    return np.full(len(right), np.nan) if singular else solution
+    if singular:
+        raise np.linalg.LinAlgError("Singular matrix")
+    return solution
 
 
 def turned(gap, slip, own, before, let_go):
@@ -293,7 +295,10 @@ def forces_at(ratios, combination, gaps, slips, strayed, w, before, h):
                 ratio = kind * curve(laws[i], max(kind * speeds.get(i, 0.0), 0.0))
             left[2 * i + 1] = 0.0
             left[2 * i + 1, 2 * i : 2 * i + 2] = ratio, 1.0
-        return solved(left, right)
+        try:
+            return solved(left, right)
+        except np.linalg.LinAlgError:
+            return np.full(len(w), np.nan)
 
     def error(velocities):
         forces = given(velocities)
