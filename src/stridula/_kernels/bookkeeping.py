@@ -7,8 +7,9 @@ from .contact import SLIDING, STICKING, closed_share, landed_share, stuck_share,
 from .friction import set_valued
 from .lanes import anywhere, choose, held, hold, magnitude, read
 from .modes import OPTIONS
+from .pressing import stored_in
 from .solves import carried_by, next_states, strayed
-from .yielding import stored_in, yields_of
+from .yielding import path_of, yields_of
 
 
 @numba.njit(**OPTIONS)
@@ -126,8 +127,8 @@ def store_in(i, gap, contacts, state, run, zero):
     """Add the energy that a yielding contact stores in this step to the work of the contacts."""
     yields = yields_of(i, contacts.constants, run, zero)
     if anywhere(yields[0] > 0.0):
-        earlier = held(state.carried, i * at.CARRIED + at.EARLIER_GAP, run, zero)
-        stored = 0.5 * (stored_in(-gap, yields) - stored_in(-earlier, yields))
+        now, before = path_of(i, state.carried, run, zero)
+        stored = stored_in(-gap, now, yields) - stored_in(now, before, yields)
         add(state.energies, at.CONTACT_WORK, run, stored, zero)
 
 
@@ -138,12 +139,8 @@ def stored_in_contacts(contacts, carried, count, run, zero):
     for i in range(count):
         yields = yields_of(i, contacts.constants, run, zero)
         if anywhere(yields[0] > 0.0):
-            base = i * at.CARRIED
-            last, earlier = (
-                held(carried, base + at.LAST_GAP, run, zero),
-                held(carried, base + at.EARLIER_GAP, run, zero),
-            )
-            energy += 0.5 * (stored_in(-last, yields) + stored_in(-earlier, yields))
+            now, before = path_of(i, carried, run, zero)
+            energy += stored_in(now, before, yields)
     return energy
 
 

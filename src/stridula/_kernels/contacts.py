@@ -16,7 +16,7 @@ from .lanes import anywhere, choose, component, everywhere, held, hold, magnitud
 from .modes import ENTRY, OPTIONS, PASTED
 from .solves import carried_by, forces_of_one, strayed
 from .space import free_of_own, is_second, put_second, solve_in_space
-from .yielding import comes_close, forces_yielding, forces_yielding_in_space, yields_anywhere, yields_of
+from .yielding import comes_close, forces_yielding, forces_yielding_in_space, path_of, yields_anywhere, yields_of
 
 # Sweeps before the first direct solve for the forces of the states found, and between direct solves.
 FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 1, 8
@@ -91,10 +91,10 @@ def forces_of_this(i, gap, slip, w, forces, contacts, carried, let_go, step, run
     yields = yields_of(i, contacts.constants, run, zero)
     if not yields_anywhere(yields):
         return forces_of_one(gap, slip, away, w, law, contacts.laws, number, at_rest, before, let_go, step, zero)
-    earlier = -held(carried, i * at.CARRIED + at.EARLIER_GAP, run, zero)
+    path = path_of(i, carried, run, zero)
     friction = (law, contacts.laws, number, at_rest)
     normal, tangential, status, jammed, give, beyond = forces_yielding(
-        (gap, slip, away, w), friction, before, let_go, step, yields, earlier, zero
+        (gap, slip, away, w), friction, before, let_go, step, yields, path, zero
     )
     hold(contacts.now, i * at.IN_STEP + at.GIVE, run, give)
     hold(contacts.now, i * at.IN_STEP + at.BEYOND, run, beyond)
@@ -109,9 +109,9 @@ def forces_of_this_in_space(i, contacts, carried, let_go, step, run, runs, zero)
     yields = yields_of(i, contacts.constants, run, zero)
     if not yields_anywhere(yields):
         return solve_in_space(gap, slips, strays, w, law, laws, number, before, let_go, step)
-    earlier = -held(carried, i * at.CARRIED + at.EARLIER_GAP, run, zero)
+    path = path_of(i, carried, run, zero)
     normal, first, second, status, jammed, give, beyond = forces_yielding_in_space(
-        (gap, slips, strays, w), (law, laws, number), before, let_go, step, yields, earlier, zero
+        (gap, slips, strays, w), (law, laws, number), before, let_go, step, yields, path, zero
     )
     hold(contacts.now, i * at.IN_STEP + at.GIVE, run, give)
     hold(contacts.now, i * at.IN_STEP + at.BEYOND, run, beyond)

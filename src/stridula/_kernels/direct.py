@@ -18,9 +18,10 @@ from .faces import displace, displace_in_space
 from .friction import set_valued
 from .lanes import anywhere, choose, component, fused, held, hold, lane, load, magnitude, set_component, store
 from .modes import OPTIONS
+from .pressing import share_of
 from .solves import strayed
 from .space import direction, is_second
-from .yielding import give_of, yields_anywhere, yields_of
+from .yielding import give_of, path_of, yields_anywhere, yields_of
 
 # Rows of the scratch before its end: displacements to restore, multipliers of two unknowns, displacements under a
 # normal force with its tangential force, and whether a run has an equation.
@@ -249,10 +250,11 @@ def soften_closed(contacts, carried, j, closes, step, run, zero):
     if not yields_anywhere(yields):
         return
     here, n = j * at.IN_STEP, 2 * j
-    before = -held(carried, j * at.CARRIED + at.EARLIER_GAP, run, zero)
     own = component(contacts.faces, n, COMPLIANCE + n, run, zero)
     indented = -component(contacts.faces, n, DISPLACEMENT, run, zero)
-    give, beyond = give_of(indented, before, yields, own, step, zero)
+    path = path_of(j, carried, run, zero)
+    share = share_of(indented, path, yields)
+    give, beyond = give_of(indented, path, yields, share, own, step, zero)
     hold(contacts.now, here + at.GIVE, run, choose(closes, give, held(contacts.now, here + at.GIVE, run, zero)))
     kept = held(contacts.now, here + at.BEYOND, run, zero)
     hold(contacts.now, here + at.BEYOND, run, choose(closes, beyond, kept))

@@ -28,8 +28,8 @@ MOTIONS = 3
 
 # Constants of a contact: initial place, gap, ends of its path; rate along the path and value at abscissa zero of the
 # two angles whose sines are the modes of the path, on a circle of the angle from the initial place; ratio at rest of
-# the law of friction; stiffness of the contact itself, 0 if rigid, its exponent, damping, and damping rate over the
-# force.
+# the law of friction; stiffness of the contact itself, 0 if rigid, its exponent, damping, damping rate over the force,
+# and size of its sawtooth under unit forces on all such contacts.
 (
     START,
     GAP,
@@ -44,8 +44,9 @@ MOTIONS = 3
     YIELD_EXPONENT,
     YIELD_DAMPING,
     YIELD_RATE,
-) = range(13)
-CONTACT_CONSTANTS = 13
+    YIELD_REACH,
+) = range(14)
+CONTACT_CONSTANTS = 14
 
 # Laws of friction, and the parameters of each, the state of a new contact last.
 COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, LUGRE, AGING, SLIP = range(7)

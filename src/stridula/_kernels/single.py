@@ -10,7 +10,7 @@ from .modes import PASTED
 from .recording import keep_probes_at
 from .solves import carried_by, forces_of_one, strayed
 from .trying import try_one
-from .yielding import comes_close, forces_yielding, yields_anywhere, yields_of
+from .yielding import comes_close, forces_yielding, path_of, yields_anywhere, yields_of
 
 
 @numba.njit(**PASTED)
@@ -25,10 +25,10 @@ def solve_single(free, contacts, carried, w, timing, run, zero):
     away, before = strayed(carried, 0, run, zero), carried_by(carried, 0, run, zero)
     yields = yields_of(0, contacts.constants, run, zero)
     if yields_anywhere(yields):
-        earlier = -held(carried, at.EARLIER_GAP, run, zero)
+        path = path_of(0, carried, run, zero)
         friction = (law, contacts.laws, run, at_rest)
         normal, tangential, status, jammed, give, beyond = forces_yielding(
-            (gap, slip, away, w), friction, before, zero, timing.step, yields, earlier, zero
+            (gap, slip, away, w), friction, before, zero, timing.step, yields, path, zero
         )
         hold(contacts.now, at.GIVE, run, give)
         hold(contacts.now, at.BEYOND, run, beyond)

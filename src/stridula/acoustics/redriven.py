@@ -133,6 +133,7 @@ def _only(flat: Assembly, names: Sequence[str]) -> Assembly:
         angular_frequency=flat.angular_frequency[kept],
         damping_rate=flat.damping_rate[kept],
         massless=flat.massless[kept],
+        lumped=flat.lumped[kept],
         stiffness=flat.stiffness[:coupled, :coupled],
         dissipation=flat.dissipation[:coupled, :coupled],
         contacts=[replace(one, fixed=one.fixed[:, kept]) for one in flat.contacts],

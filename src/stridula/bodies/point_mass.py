@@ -38,6 +38,7 @@ class PointMass(NamedPoints):
     point_names: ClassVar[tuple[str, ...]] = ("centre",)
     is_spatial: ClassVar[bool] = False
     has_translation: ClassVar[bool] = True
+    is_lumped: ClassVar[bool] = True
     without_surface: ClassVar[str] = "which has no modes that vibrate"
     mass: Annotated[float, Number("kg", above=0.0)]
     name: Name = ""

@@ -41,6 +41,8 @@ from .reduction import Reduction, reduce_body
 from .sparse_reduction import reduce_sparse_body
 
 FILES = ("path", "mass", "stiffness")
+# Most modes of a lumped model: a finite-element model has motions that are not physical.
+LARGEST_LUMPED = 12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -287,6 +289,11 @@ class ReducedBody(NamedPoints):
     def axes(self) -> Array:
         """World components of its axes, which are those of the world, shape (2, 2) or (3, 3)."""
         return np.eye(self._directions)
+
+    @property
+    def is_lumped(self) -> bool:
+        """Whether all its motions are physical: a small model without a cutoff."""
+        return self.cutoff is None and self.modes().count <= LARGEST_LUMPED
 
     @property
     def has_translation(self) -> bool:

@@ -47,6 +47,7 @@ class RigidBody(NamedPoints):
 
     kind: ClassVar[str] = "rigid body"
     has_translation: ClassVar[bool] = True
+    is_lumped: ClassVar[bool] = True
     without_surface: ClassVar[str] = "which has no modes that vibrate"
     is_spatial: ClassVar[bool] = True
     mass: Annotated[float, Number("kg", above=0.0)]

@@ -34,22 +34,18 @@ class ContactStiffness(Protocol):
         """Stiffness K [N/m^p], exponent p, damping c [N s/m] and damping rate r [s/m]."""
 
 
-def force_at(stiffness: ContactStiffness, indentation: float) -> float:
-    """Return the force [N] at a constant indentation [m]."""
-    k, p, *_ = stiffness.numbers
-    return float(k * max(indentation, 0.0) ** p)
+def force_at(stiffness: ContactStiffness, indentation: float, velocity: float = 0.0) -> float:
+    """Return the force [N] at an indentation [m] that grows with a velocity [m/s]."""
+    k, p, damping, rate = stiffness.numbers
+    if indentation <= 0.0:
+        return 0.0
+    return float(max(k * indentation**p * (1.0 + rate * velocity) + damping * velocity, 0.0))
 
 
 def indentation_under(stiffness: ContactStiffness, force: float) -> float:
     """Return the indentation [m] under a constant force [N]."""
     k, p, *_ = stiffness.numbers
     return float((max(force, 0.0) / k) ** (1.0 / p))
-
-
-def stored_at(stiffness: ContactStiffness, indentation: float) -> float:
-    """Return the stored energy [J] at an indentation [m]."""
-    _, p, *_ = stiffness.numbers
-    return force_at(stiffness, indentation) * max(indentation, 0.0) / (p + 1.0)
 
 
 def tangent_of(stiffness: ContactStiffness, indentation: float) -> tuple[float, float]:

@@ -29,7 +29,7 @@ from .equilibrium_start import in_equilibrium
 from .marches import Impositions, March
 from .run import CONTACT_COLUMN, ENERGY_COLUMN, along_both
 from .simulate import choose_timing
-from .start import rows_at, state_at_start, stored_in_contacts
+from .start import state_at_start, stored_in_contacts
 from .stops import ENDED
 
 # Share of the lowest frequency of vibration below which a mode counts as free when contacts are opened.
@@ -420,7 +420,7 @@ def _apart(attributes: dict[str, Any]) -> dict[str, Any]:
 def _opening(arrays: Assembly, places: Array, position: Array, gaps: Array) -> Array:
     """Return the displacement that opens contacts to given gaps, as by contact forces, rigid motions first."""
     firsts = [one for one in arrays.contacts if not one.is_second]
-    rows = np.array([rows_at(one, place)[0] for one, place in zip(firsts, places, strict=True)])
+    rows = np.array([one.rows_at(place)[0] for one, place in zip(firsts, places, strict=True)])
     squared = arrays.all_stiffness
     vibrating = np.diag(squared)[np.diag(squared) > 0.0]
     squared += SOFT**2 * (vibrating.min() if vibrating.size else 1.0) * np.eye(rows.shape[1])

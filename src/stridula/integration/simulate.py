@@ -20,6 +20,7 @@ from ..records.probes import usual_probes
 from ..system import System
 from .bars import time_shown
 from .contact_solve import GaussSeidel
+from .default_step import default_step
 from .marches import March
 from .point_records import PointRecord, bytes_of
 from .run import Run
@@ -63,8 +64,8 @@ def simulate(
     scheme : CentralDifference or ExactModal, optional
         Time scheme; the exact modal one if left out.
     step : float, optional
-        Time step [s]; if left out, the scheme's default fraction of its limit for the modes kept, reduced to a whole
-        division of the sample interval.
+        Time step [s]; if left out, that of the record to continue, or one that follows from the modes kept and from the
+        springs and contacts of lumped masses, reduced to a whole division of the sample interval.
     sample_rate : float, optional
         Samples per second to record [Hz]; with a step given, the nearest rate at which a sample is a whole number
         of steps.
@@ -186,10 +187,13 @@ class Asked:
             probes += tuple(ModalMotion(body) for body in system.bodies)
         return Arrays(system, probes, assemble(system, probes))
 
-    def timing(self, arrays: Arrays) -> Timing:
-        """Return the step and the sampling of a system."""
+    def timing(self, arrays: Arrays, start: xr.Dataset | None = None) -> Timing:
+        """Return the step and the sampling of a system, with the step of a record to continue if none is given."""
+        step = self.step
+        if step is None and isinstance(start, xr.Dataset) and "step" in start.attrs:
+            step = float(start.attrs["step"])
         if self.common_step is None:
-            timing = choose_timing(arrays.flat, self.scheme, self.duration, self.step, self.sample_rate)
+            timing = choose_timing(arrays.flat, self.scheme, self.duration, step, self.sample_rate)
         else:
             timing = _sampled(self.common_step, round(1.0 / (self.sample_rate * self.common_step)), self.duration)
         if self.motion_rate is None:
@@ -200,7 +204,7 @@ class Asked:
     @of_ordinary_size("system")
     def run(self, arrays: Arrays, start: xr.Dataset | None = None, title: str = "") -> Run:
         """Return the run of a system, ready to march."""
-        timing = self.timing(arrays)
+        timing = self.timing(arrays, start)
         every = self._every(arrays.system, timing)
         self._check_size(arrays, timing, every)
         surfaces = None
@@ -263,17 +267,15 @@ def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float
     """Return the step and the sampling for the arguments of `simulate`."""
     positive("duration", duration)
     wanted = 1.0 / positive("sample_rate", sample_rate)
-    limit = Stepping(arrays, scheme).limit
     if step is None:
-        ratio = max(1, int(np.ceil(wanted / (scheme.default_fraction * limit) - 1e-9)))
+        ratio = max(1, int(np.ceil(wanted / default_step(arrays, scheme, duration) - 1e-9)))
         step = wanted / ratio
-    elif (step := positive("step", step)) >= limit:
-        raise ArgumentError("step", f"be below the {scheme.name} scheme's limit of {at_most(limit)} s", step)
-    elif step < SMALLEST_SHARE * min(limit, 1.0):
-        raise ArgumentError(
-            "step", f"be at least {at_least(SMALLEST_SHARE * min(limit, 1.0), 3)} s for these modes", step
-        )
     else:
+        step, limit = positive("step", step), Stepping(arrays, scheme).limit
+        if step >= limit:
+            raise ArgumentError("step", f"be below the {scheme.name} scheme's limit of {at_most(limit)} s", step)
+        if step < SMALLEST_SHARE * limit < np.inf:
+            raise ArgumentError("step", f"be at least {at_least(SMALLEST_SHARE * limit, 3)} s for these modes", step)
         ratio = max(1, round(wanted / step))
     if ratio > LARGEST_RATIO:
         raise ArgumentError(

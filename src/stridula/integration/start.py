@@ -10,8 +10,10 @@ from .._kernels import layout as at
 from .._kernels.bristles import bristles_ratio, next_bristles_of_run
 from .._kernels.contact import SEPARATED, SLIDING, STICKING
 from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
+from .._kernels.pressing import stored_in_one
 from ..arrays import Array
 from ..checks import ArgumentError
+from ..contact.stiffness import force_at, slopes_at
 from ..lowering import Assembly, ContactRows
 from ..lowering.blocks import Blocks
 from ..lowering.schemes import Scheme
@@ -22,6 +24,8 @@ from .forces import forces_of
 
 # Relative rounding error of a gap whose terms are results of sums or solutions.
 ROUND_OFF = 512.0 * np.finfo(float).eps
+# Give of compliant contacts at the start, over the compliance of the bodies.
+FLAT = 1e6
 # Relative stiffness of coupled modes that is due to rounding.
 STIFFLESS = 1e-13
 
@@ -46,6 +50,7 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
     if closed.size:
         forces = start.forces(closed, first, carried, solve)
         first = start.increment(force + (forces * [1.0, -1.0]).ravel() @ start.pushes(closed))
+        first += start.increment_of_rates(closed, forces)
         carried = start.carried(first)
         carried[closed[:, None], [at.LAST_NORMAL, at.LAST_TANGENTIAL]] = forces
         pressed = closed[forces[:, 0] > 0.0]
@@ -60,7 +65,9 @@ def stored_in_contacts(arrays: Assembly, carried: Array) -> float:
     """Return the energy stored in compliant contacts half a step before the start [J]."""
     energy = 0.0
     for one, own in zip(arrays.contacts, carried, strict=True):
-        energy += sum(0.5 * one.stored(gap) for gap in own[[at.LAST_GAP, at.EARLIER_GAP]].tolist())
+        if one.yields is not None:
+            coefficient, exponent, *_ = one.yields.numbers
+            energy += stored_in_one(-own[at.LAST_GAP], -own[at.EARLIER_GAP], coefficient, exponent)
     return energy
 
 
@@ -80,7 +87,7 @@ class _Start:
         moved = arrays.motion(times[1:2], step)[0, :, at.TIP_MOTION] + self.travels @ arrays.position
         places = [one.at + shift for one, shift in zip(arrays.contacts, moved.tolist(), strict=True)]
         self._go_together(places)
-        self.rows = np.array([rows_at(*pair) for pair in zip(arrays.contacts, places, strict=True)])
+        self.rows = np.array([pair[0].rows_at(pair[1]) for pair in zip(arrays.contacts, places, strict=True)])
         terms = _terms(arrays, self.factors @ arrays.loads)
         gaps = np.array([_gap(*pair, arrays, terms) for pair in zip(arrays.contacts, self.rows, strict=True)])
         self.first = np.flatnonzero(arrays.firsts)[arrays.contact_numbers]
@@ -196,9 +203,11 @@ class _Start:
         gap, slip = gap + self.rows[:, 0] @ around, slip + self.rows[:, 1] @ beyond
         compliance = self._compliance(self.pushes(closed))
         for k, i in enumerate(closed):
-            give, further = self.arrays.contacts[i].tangent(float(self.gaps[i]))
-            compliance[2 * k, 2 * k] += give
-            gap[i] += further
+            if self.arrays.contacts[i].yields is not None:
+                # Its force is known; a give that large makes it the result of the solution.
+                give = FLAT * compliance[2 * k, 2 * k]
+                compliance[2 * k, 2 * k] += give
+                gap[i] = -(compliance[2 * k, 2 * k]) * self.pressing[i]
         codes, laws = self.contacts.codes[closed], self.contacts.laws[closed]
         ratios = self._known_ratios(carried)[closed]
         for i in np.flatnonzero(np.isfinite(ratios)):
@@ -213,8 +222,48 @@ class _Start:
             else:
                 ratios[i] = np.nan
         forces = forces_of(gap[closed], slip[closed], compliance, (codes, laws), carried[closed], self.step, solve)
+        soft = np.array([self.arrays.contacts[i].yields is not None for i in closed])
+        forces[:, 0] = np.where(soft, self.pressing[closed], forces[:, 0])
         forces[:, 1] = np.where(np.isfinite(ratios), ratios * forces[:, 0], forces[:, 1])
         return forces
+
+    def increment_of_rates(self, closed: Array, forces: Array) -> Array:
+        """Return the part of the increment before the start that is due to the change of forces on compliant contacts.
+
+        Under a force with the rate f' the position a step earlier is lower by ``h³ f' / 6 m``. The tangential force of
+        a contact changes with its normal force, in the ratio of both.
+        """
+        ratios = forces[:, 1] / np.where(forces[:, 0] > 0.0, forces[:, 0], 1.0)
+        rates = self.pressing_rates[closed]
+        rates = np.stack([rates, -ratios * rates], axis=1)
+        moved = self.modes.mobility(rates.ravel() @ self.pushes(closed)) * self.step / 6.0
+        return np.where(self.arrays.massless, 0.0, moved)
+
+    @cached_property
+    def gap_speeds(self) -> Array:
+        """Velocity of the gap of each contact at the start [m/s]."""
+        imposed = (self.before + self.after)[:, 2] * 0.5 / self.step
+        return np.asarray(self.rows[:, 0] @ self.arrays.velocity + imposed)
+
+    @cached_property
+    def pressing(self) -> Array:
+        """Normal force of each compliant contact at the start [N], 0 for rigid ones."""
+        forces = np.zeros(len(self.gaps))
+        for i, one in enumerate(self.arrays.contacts):
+            if one.yields is not None:
+                forces[i] = force_at(one.yields, -float(self.gaps[i]), -float(self.gap_speeds[i]))
+        # Both pairs of rows of a contact in space have its force.
+        return forces[self.first]
+
+    @cached_property
+    def pressing_rates(self) -> Array:
+        """Rate of the elastic part of that force [N/s]."""
+        rates = np.zeros(len(self.gaps))
+        for i, one in enumerate(self.arrays.contacts):
+            if one.yields is not None and self.pressing[i] > 0.0:
+                elastic = force_at(one.yields, -float(self.gaps[i]))
+                rates[i] = -slopes_at(one.yields, elastic)[0] * self.gap_speeds[i]
+        return rates[self.first]
 
     def _turned(self, modal: Array) -> tuple[Array, Array]:
         """Return the change of modal values by turning in the first step, and the same relative to the material."""
@@ -232,7 +281,7 @@ class _Start:
             for one, travel, moved in zip(self.arrays.contacts, self.travels, self.after[:, 0], strict=True)
         ]
         self._go_together(places)
-        there = np.array([rows_at(one, place) for one, place in zip(self.arrays.contacts, places, strict=True)])
+        there = np.array([one.rows_at(place) for one, place in zip(self.arrays.contacts, places, strict=True)])
         # The change of the rows is small: a separate difference keeps its digits.
         travelled = (there - self.rows) @ (self.arrays.position + increments)
         for i, one in enumerate(self.arrays.contacts):
@@ -252,18 +301,6 @@ class _Start:
             for push, first in zip(pushes, increments, strict=True)
         ]
         return np.ascontiguousarray(pushes @ np.array(answers).T)
-
-
-def rows_at(one: ContactRows, place: float) -> Array:
-    """Return the rows of a contact along normal and tangent, with the tip at an abscissa [m] of its track."""
-    if one.circle is not None:
-        return one.round_at(place)
-    track = one.contact.path_body
-    if track is None or one.is_second:
-        return one.fixed
-    full, (low, high) = one.fixed.copy(), track.ends
-    full[:, one.bending[0] : one.axial[1]] -= (track.axes @ track.trace(min(max(place, low), high)))[::-1]
-    return full
 
 
 def _terms(arrays: Assembly, force: Array) -> Array:

@@ -13,7 +13,6 @@ from ..lowering import Assembly
 from ..lowering.blocks import Blocks
 from ..records.state import State
 from ..records.variables import STATUS_WORDS
-from .start import rows_at
 
 ENDED = {
     at.FINISHED: "finished",
@@ -77,7 +76,7 @@ def rank_words(arrays: Assembly, blocks: Blocks, state: State) -> str:
     """Return rank and condition of the compliance of the closed contacts, in words."""
     places = state.carried[:, at.ABSCISSA]
     closed = np.flatnonzero(state.carried[:, at.STATUS] > 0)
-    rows = [rows_at(arrays.contacts[i], float(places[i])) for i in closed]
+    rows = [arrays.contacts[i].rows_at(float(places[i])) for i in closed]
     # The rows of a second tangent have no normal.
     rows = [pair[1:] if arrays.contacts[i].is_second else pair for i, pair in zip(closed, rows, strict=True)]
     if not rows or not np.isfinite(places[closed]).all():

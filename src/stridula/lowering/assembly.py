@@ -29,6 +29,8 @@ class Assembly:
         Undamped angular frequencies w [rad/s] and ``2 zeta w`` [1/s]; zero for coupled modes.
     massless : ndarray of bool, shape (modes,)
         Mask of the residual shapes, of unit stiffness and no mass.
+    lumped : ndarray of bool, shape (modes,)
+        Mask of the motions of lumped bodies, and of the rigid motions of others.
     stiffness, dissipation : ndarray, shape (coupled, coupled)
         Stiffness [1/s²] and damping matrix [1/s] of the coupled modes, which come first.
     contacts : list of ContactRows
@@ -60,6 +62,7 @@ class Assembly:
     angular_frequency: Array
     damping_rate: Array
     massless: Array
+    lumped: Array
     stiffness: Array
     dissipation: Array
     contacts: list[ContactRows]
@@ -134,6 +137,7 @@ def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:
         angular_frequency=angular,
         damping_rate=rate,
         massless=massless,
+        lumped=coordinates.lumped,
         stiffness=stiffness[:size, :size],
         dissipation=dissipation[:size, :size],
         contacts=[pair for contact in system.contacts for pair in contact_rows(contact, coordinates, turning)],

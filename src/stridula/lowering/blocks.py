@@ -55,6 +55,19 @@ class Recurrence:
         moved[..., :size] = rows[..., :size] @ self.matrices[at.MOBILITY].T
         return np.asarray(moved)
 
+    def sawtooth(self, rows: Array) -> Array:
+        """Return the size of a motion of every mode that changes its sign from step to step, under unit forces on rows.
+
+        Shape (..., modes). It is above zero below the limit of the scheme.
+        """
+        size = self.matrices.shape[1]
+        moved = self.block[at.LOAD] * rows / (2.0 * (1.0 + self.block[at.B]) - self.block[at.R])
+        if size:
+            kept, stiffness, mobility = (self.matrices[k] for k in (at.KEPT, at.STIFFNESS, at.MOBILITY))
+            swung = np.linalg.solve(2.0 * (np.eye(size) + kept) - stiffness, mobility)
+            moved[..., :size] = rows[..., :size] @ swung.T
+        return np.asarray(moved)
+
     def free(self, position: Array, increment: Array) -> Array:
         """Return the next increments of free motion."""
         size = self.matrices.shape[1]
@@ -205,7 +218,7 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
         codes[i], laws[i] = _law(one.contact.friction)
         constants[i, at.AT_REST] = laws[i, 0]
         if one.yields is not None:
-            constants[i, at.YIELD_STIFFNESS :] = one.yields.numbers
+            constants[i, at.YIELD_STIFFNESS : at.YIELD_REACH] = one.yields.numbers
         if one.is_second:
             codes[i] = at.SECOND_TANGENT
         elif not one.fixed[0].any() and along is None:
@@ -214,6 +227,7 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
                 "have a tip or a track that moves along its normal",
                 got="neither",
             )
+    constants[:, at.YIELD_REACH] = _reach(arrays, modes)
     constant = rows.copy()
     circles = np.full(count, -1, dtype=np.int64)
     for i, one in enumerate(arrays.contacts):
@@ -223,6 +237,16 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
     flat = constant.reshape(2 * count, -1)
     compliance = np.ascontiguousarray(flat @ modes.mobility(flat).T)
     return ContactBlocks(constants, codes, laws, rows, compliance, paths, circles)
+
+
+def _reach(arrays: Assembly, modes: Recurrence) -> Array:
+    """Return the largest sawtooth of each compliant contact under unit forces of either sign on all of them [m]."""
+    reach = np.zeros(len(arrays.contacts))
+    soft = [i for i, one in enumerate(arrays.contacts) if one.yields is not None]
+    if soft:
+        rows = np.array([arrays.contacts[i].rows_at(arrays.contacts[i].at)[0] for i in soft])
+        reach[soft] = np.abs(rows @ modes.sawtooth(rows).T).sum(axis=1)
+    return reach
 
 
 def _path_modes(one: ContactRows) -> PathModes | None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..contact import LAWS, PointContact
-from ..contact.stiffness import ContactStiffness, stored_at, tangent_of
+from ..contact.stiffness import ContactStiffness
 from .coordinates import Coordinates
 from .turning_modes import TurningModes
 
@@ -76,18 +76,21 @@ class ContactRows:
         """Abscissa along the tangent at the start [m]."""
         return 0.0 if self.is_second else self.contact.at
 
+    def rows_at(self, place: float) -> Array:
+        """Return the rows along normal and tangent with the tip at an abscissa [m] of its track."""
+        if self.circle is not None:
+            return self.round_at(place)
+        track = self.contact.path_body
+        if track is None or self.is_second:
+            return self.fixed
+        full, (low, high) = self.fixed.copy(), track.ends
+        full[:, self.bending[0] : self.axial[1]] -= (track.axes @ track.trace(min(max(place, low), high)))[::-1]
+        return full
+
     @property
     def yields(self) -> ContactStiffness | None:
         """Stiffness of the contact along the normal, None if it is rigid and for the second tangent."""
         return None if self.is_second else self.contact.yields
-
-    def stored(self, gap: float) -> float:
-        """Return the energy stored in a compliant contact at a gap, negative where it is indented [J]."""
-        return 0.0 if self.yields is None else stored_at(self.yields, -gap)
-
-    def tangent(self, gap: float) -> tuple[float, float]:
-        """Return the compliance [m/N] at a gap and the offset [m] of the tangent, as in `tangent_of`; 0 if rigid."""
-        return (0.0, 0.0) if self.yields is None else tangent_of(self.yields, -gap)
 
     @property
     def gap(self) -> float:

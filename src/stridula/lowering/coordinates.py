@@ -108,6 +108,15 @@ class Coordinates:
         return np.concatenate([self.modes(body).massless for body in self.order])
 
     @property
+    def lumped(self) -> Array:
+        """Mask of the motions of lumped bodies, and of the rigid motions of others."""
+        found = []
+        for body in self.order:
+            rigid = self.modes(body).angular_frequency == 0.0
+            found.append(np.ones_like(rigid) if getattr(body, "is_lumped", False) else rigid)
+        return np.concatenate(found) & ~self.massless
+
+    @property
     def matrices(self) -> tuple[Array, Array]:
         """Stiffness and damping matrix of the modes of joined bodies, which come first."""
         return self._coupling[0], self._coupling[1]

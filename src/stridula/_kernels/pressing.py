@@ -1,0 +1,266 @@
+"""Force of a contact with a stiffness over a step, from the path of its indentation, and the energy stored in it.
+
+The force of step n is the mean of the force along the path over the two steps about it, weighted by a triangle: that
+mean moves a mass exactly. The path is the parabola through the indentations of steps n - 1, n and n + 1, which makes
+the force of fourth order; where the contact opens or closes, or its damping would pull, the path is divided.
+"""
+
+import math
+
+import numba
+from numba.extending import overload
+
+from .friction import STRICT
+from .lanes import lane, spread, with_lane
+from .vectors import LANES, VECTOR
+
+# Change of the indentation, relative to its mean, below which the quotient is computed by its series.
+SMALL = 0.01
+# Stiffness of a contact times the size of its sawtooth, a motion that changes its sign from step to step, under unit
+# forces on all contacts, up to which the path alone gives the force. It would be unstable from 1.5 on: above, the
+# quotient of stored energies, which is stable at any step, has a share that grows to one.
+RESOLVED = 1.0
+# Nodes of Gauss's quadrature with four points, from the middle, relative to half the interval, and their weights.
+NODES = (-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526)
+WEIGHTS = (0.3478548451374538, 0.6521451548625461, 0.6521451548625461, 0.3478548451374538)
+
+
+@numba.njit(**STRICT)
+def power(x, exponent):
+    """Return a power of a number that is not negative."""
+    if exponent == 1.5:
+        return x * math.sqrt(x)
+    return x if exponent == 1.0 else x**exponent
+
+
+@numba.njit(**STRICT)
+def quotient(x, before, exponent):
+    """Return ``(U(x) - U(before)) / (x - before)`` for ``U' = x^exponent`` from zero on, and its slope in x."""
+    inside, was = max(x, 0.0), max(before, 0.0)
+    mean, change = 0.5 * (inside + was), x - before
+    if inside > 0.0 and was > 0.0 and abs(change) <= SMALL * mean:
+        p, share = exponent, (change / mean) ** 2
+        bend = p * (p - 1.0) / 24.0
+        force = power(mean, p) * (1.0 + bend * share * (1.0 + (p - 2.0) * (p - 3.0) / 80.0 * share))
+        return force, power(mean, p) / mean * (0.5 * p + 2.0 * bend * change / mean)
+    if change == 0.0:
+        return 0.0, 0.0
+    stored = (inside * power(inside, exponent) - was * power(was, exponent)) / (exponent + 1.0)
+    force = stored / change
+    return force, (power(inside, exponent) - force) / change
+
+
+@numba.njit(**STRICT)
+def press_by_quotient(x, before, yields, step):
+    """Return the force of an indentation by the quotient of energies, and its slope."""
+    stiffness, exponent, damping, rate, _ = yields
+    force, slope = quotient(x, before, exponent)
+    velocity = 0.5 * (max(x, 0.0) - max(before, 0.0)) / step
+    braked = stiffness * force * rate + damping
+    total = stiffness * force + braked * velocity
+    if total <= 0.0:
+        return 0.0, 0.0
+    return total, stiffness * slope * (1.0 + rate * velocity) + (0.5 * braked / step if x > 0.0 else 0.0)
+
+
+@numba.njit(**STRICT)
+def roots(bent, sloped, level):
+    """Return the real roots of ``level + sloped s + bent s²``, 2 in place of those that do not exist."""
+    if bent == 0.0:
+        return (-level / sloped if sloped != 0.0 else 2.0), 2.0
+    under = sloped * sloped - 4.0 * bent * level
+    if under <= 0.0:
+        return 2.0, 2.0
+    half = -0.5 * (sloped + math.copysign(math.sqrt(under), sloped))
+    return half / bent, (level / half if half != 0.0 else 2.0)
+
+
+@numba.njit(**STRICT)
+def nearest_above(low, high, one):
+    """Return `one` where it lies between the other two, else `high`."""
+    return one if low < one < high else high
+
+
+@numba.njit(**STRICT)
+def press_on_piece(low, high, path, yields, step):
+    """Return the force on a piece of the path, in steps from -1 to 1, and its slope in the indentation of step n + 1.
+
+    Within a piece the contact is closed or open, and the force is positive or none.
+    """
+    stiffness, exponent, damping, rate, _ = yields
+    level, sloped, bent = path
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    force, slope = 0.0, 0.0
+    for k in range(4):
+        s = middle + half * NODES[k]
+        inside, moved = level + s * (sloped + s * bent), (sloped + 2.0 * s * bent) / step
+        if inside <= 0.0:
+            return 0.0, 0.0
+        elastic = stiffness * power(inside, exponent)
+        braked = damping + rate * elastic
+        here = elastic + braked * moved
+        if here <= 0.0:
+            return 0.0, 0.0
+        weight = half * WEIGHTS[k] * (1.0 - abs(s))
+        share, speed = 0.5 * s * (s + 1.0), (s + 0.5) / step
+        force += weight * here
+        slope += weight * (exponent * elastic / inside * (1.0 + rate * moved) * share + braked * speed)
+    return force, slope
+
+
+@numba.njit(**STRICT)
+def press_on_path(x, now, before, yields, step):
+    """Return the force over a step and its slope in x, for the indentations of steps n + 1, n and n - 1.
+
+    Only a linear stiffness has a dashpot, and no damping rate beside it.
+    """
+    stiffness, exponent, damping, rate, _ = yields
+    level, sloped, bent = now, 0.5 * (x - before), 0.5 * (x - 2.0 * now + before)
+    if max(x, now, before) <= 0.0:
+        return 0.0, 0.0
+    if exponent == 1.0 and rate == 0.0 and min(x, now, before) > 0.0:
+        # A parabola deviates from the chords of three points by at most an eighth of their second difference, and its
+        # steepest slope is that at an end.
+        least = min(x, now, before) - 0.25 * abs(bent)
+        if stiffness * least >= damping * (abs(sloped) + 2.0 * abs(bent)) / step:
+            force = stiffness * (x + 10.0 * now + before) / 12.0 + damping * sloped / step
+            return force, stiffness / 12.0 + 0.5 * damping / step
+    opens, closes = roots(bent, sloped, level)
+    if rate == 0.0:
+        first, second = roots(
+            stiffness * bent,
+            stiffness * sloped + 2.0 * damping * bent / step,
+            stiffness * level + damping * sloped / step,
+        )
+    else:
+        first, second = roots(0.0, 2.0 * rate * bent / step, 1.0 + rate * sloped / step)
+    force, slope, low = 0.0, 0.0, -1.0
+    while low < 1.0:
+        high = nearest_above(low, 1.0, 0.0)
+        for cut in (opens, closes, first, second):
+            high = nearest_above(low, high, cut)
+        more, steeper = press_on_piece(low, high, (level, sloped, bent), yields, step)
+        force, slope, low = force + more, slope + steeper, high
+    if damping > 0.0:
+        # The force of a dashpot begins at once where the contact closes, at a place that moves with x.
+        for cut in (opens, closes):
+            if -1.0 < cut < 1.0 and sloped + 2.0 * cut * bent > 0.0:
+                slope += damping / step * (1.0 - abs(cut)) * 0.5 * cut * (cut + 1.0)
+    return force, slope
+
+
+@numba.njit(**STRICT)
+def share_of_quotient(x, now, before, yields):
+    """Return the share of the force by the quotient of energies, for the indentation `x` without force."""
+    deepest = max(x, now, before)
+    if deepest <= 0.0:
+        return 0.0
+    steepness = yields[4] * yields[0] * yields[1] * power(deepest, yields[1]) / deepest
+    return 1.0 - RESOLVED / steepness if steepness > RESOLVED else 0.0
+
+
+@numba.njit(**STRICT)
+def press_one(x, path, yields, share, step):
+    """Return the force of an indentation and its slope.
+
+    `path` are the indentations of the last two steps, the later first, `share` that of the quotient of energies.
+    """
+    now, before = path
+    force, slope = press_on_path(x, now, before, yields, step)
+    if share == 0.0:
+        return force, slope
+    other, steeper = press_by_quotient(x, before, yields, step)
+    return force + share * (other - force), slope + share * (steeper - slope)
+
+
+@numba.njit(**STRICT)
+def between(x, now, exponent):
+    """Return the energy per stiffness stored between two steps, given the indentations at both.
+
+    A sixth of it is the mean of the energies at the two steps; the rest is the energy at their geometric mean, which
+    for a linear stiffness makes the sum of all energies constant as long as the contact is closed.
+    """
+    inside, was = max(x, 0.0), max(now, 0.0)
+    mean = math.sqrt(inside * was)
+    energy = 5.0 * mean * power(mean, exponent)
+    energy += 0.5 * (inside * power(inside, exponent) + was * power(was, exponent))
+    return energy / (6.0 * (exponent + 1.0))
+
+
+@numba.njit(**STRICT)
+def stored_in_one(x, now, stiffness, exponent):
+    """Do `stored_in` for one run."""
+    return stiffness * between(x, now, exponent) if stiffness > 0.0 else 0.0
+
+
+def share_of(x, path, yields):
+    """Return the shares of the forces by quotients of energies."""
+    return share_of_quotient(x, path[0], path[1], yields)
+
+
+def press(x, path, yields, share, step):
+    """Return the forces of indentations and their slopes."""
+    return press_one(x, path, yields, share, step)
+
+
+def stored_in(x, now, yields):
+    """Return the energies stored in contacts between two steps, given the indentations at both."""
+    return stored_in_one(x, now, yields[0], yields[1])
+
+
+@numba.njit(**STRICT)
+def lane_of_yields(yields, i):
+    """Return stiffness, exponent, damping, damping rate and reach in a lane."""
+    return lane(yields[0], i), lane(yields[1], i), lane(yields[2], i), lane(yields[3], i), lane(yields[4], i)
+
+
+@numba.njit(**STRICT)
+def share_of_runs(x, path, yields):
+    """Do `share_of` for vectors of runs."""
+    share = spread(0.0)
+    for i in range(LANES):
+        now, before = lane(path[0], i), lane(path[1], i)
+        one = share_of_quotient(lane(x, i), now, before, lane_of_yields(yields, i))
+        share = with_lane(share, i, one)
+    return share
+
+
+@numba.njit(**STRICT)
+def press_runs(x, path, yields, share, step):
+    """Do `press` for vectors of runs."""
+    force, slope = spread(0.0), spread(0.0)
+    for i in range(LANES):
+        pair = lane(path[0], i), lane(path[1], i)
+        one = press_one(lane(x, i), pair, lane_of_yields(yields, i), lane(share, i), step)
+        force, slope = with_lane(force, i, one[0]), with_lane(slope, i, one[1])
+    return force, slope
+
+
+@numba.njit(**STRICT)
+def stored_in_runs(x, now, yields):
+    """Do `stored_in` for vectors of runs."""
+    energy = spread(0.0)
+    for i in range(LANES):
+        one = stored_in_one(lane(x, i), lane(now, i), lane(yields[0], i), lane(yields[1], i))
+        energy = with_lane(energy, i, one)
+    return energy
+
+
+@overload(share_of)
+def _share_of(x, path, yields):
+    if x is VECTOR:
+        return lambda x, path, yields: share_of_runs(x, path, yields)
+    return lambda x, path, yields: share_of_quotient(x, path[0], path[1], yields)
+
+
+@overload(press)
+def _press(x, path, yields, share, step):
+    chosen = press_runs if x is VECTOR else press_one
+    return lambda x, path, yields, share, step: chosen(x, path, yields, share, step)
+
+
+@overload(stored_in)
+def _stored_in(x, now, yields):
+    if x is VECTOR:
+        return lambda x, now, yields: stored_in_runs(x, now, yields)
+    return lambda x, now, yields: stored_in_one(x, now, yields[0], yields[1])

@@ -1,0 +1,66 @@
+"""Time scales of a system from which its default step follows, besides those of the modes up to a cutoff."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import Array
+from .assembly import Assembly
+
+# Times at which loads are evaluated.
+TIMES = 256
+# Contact force expected under a load that begins at once, over the load.
+OVERSHOOT = 2.0
+
+
+def fastest_vibration(arrays: Assembly, duration: float) -> float:
+    """Return the highest angular frequency [rad/s] of lumped masses on their springs and contacts, 0 without any.
+
+    All motions of lumped bodies are physical, unlike the highest modes below a cutoff: a squeal or an impact on a
+    contact with a stiffness may have this frequency. Other bodies are held, except for their rigid motions. Contacts
+    are closed, with the stiffness under the largest force expected within `duration` [s].
+    """
+    lumped = np.flatnonzero(arrays.lumped)
+    if not lumped.size:
+        return 0.0
+    rows = np.array([one.fixed[0, lumped] for one in arrays.contacts if one.yields is not None])
+    if not rows.size and not arrays.coupled:
+        return float(arrays.angular_frequency[lumped].max())
+    stiffness = arrays.all_stiffness[np.ix_(lumped, lumped)]
+    if rows.size:
+        stiffness = stiffness + (rows.T * expected_stiffness(arrays, duration)) @ rows
+    return float(np.sqrt(max(np.linalg.eigvalsh(0.5 * (stiffness + stiffness.T))[-1], 0.0)))
+
+
+def expected_stiffness(arrays: Assembly, duration: float) -> Array:
+    """Return the stiffness of each contact that has one [N/m] under the largest force expected within `duration` [s].
+
+    A contact with a power law is expected to take the loads and to stop the velocity that it has at the start, or has
+    gained while its gap closes, each as if it were the only one.
+    """
+    soft = [one for one in arrays.contacts if one.yields is not None]
+    if all(one.yields is not None and one.yields.numbers[1] == 1.0 for one in soft):
+        return np.array([one.yields.numbers[0] for one in soft if one.yields is not None])
+    times = np.linspace(0.0, duration, TIMES)
+    factors = np.array([signal(times, times[1]) for signal in arrays.signals[: len(arrays.loads)]])
+    lifts = np.gradient(arrays.motion(times, times[1])[:, :, 2], times, axis=0)
+    found = []
+    for number, one in enumerate(arrays.contacts):
+        if one.yields is None:
+            continue
+        row = np.where(arrays.lumped, one.fixed[0], 0.0)
+        mobility = row @ row
+        pull = -(row @ arrays.loads.T) @ factors.reshape(len(arrays.loads), -1) if len(arrays.loads) else np.zeros(1)
+        pressing = max(float(pull.max()), 0.0)
+        gap = one.gap + one.fixed[0] @ arrays.position
+        speed = max(-float(one.fixed[0] @ arrays.velocity + lifts[:, number].min()), 0.0)
+        energy = 0.5 * speed**2 + pressing * max(gap, 0.0)
+        found.append(_steepest(one.yields.numbers, energy / mobility, OVERSHOOT * pressing / mobility, -gap))
+    return np.array(found)
+
+
+def _steepest(numbers: tuple[float, float, float, float], energy: float, force: float, indentation: float) -> float:
+    """Return the stiffness [N/m] at the deepest indentation: under an energy [J], a force [N], or as it is [m]."""
+    k, p, *_ = numbers
+    deepest = max((energy * (p + 1.0) / k) ** (1.0 / (p + 1.0)), (force / k) ** (1.0 / p), indentation, 0.0)
+    return float(k * p * deepest ** (p - 1.0))
