@@ -10,8 +10,8 @@ from ..lowering.stepping import Stepping
 from ..lowering.time_scales import fastest_vibration
 
 # Steps in a period of the fastest vibration of lumped masses on springs and contacts.
-PER_PERIOD = 32
-# Longest step [s] with lumped masses, whose impacts and stops have no time scale, and most steps that it may cause.
+PER_PERIOD = 40
+# Longest step [s] with lumped masses that do not vibrate, and most steps that it may cause.
 LONGEST, MOST_STEPS = 1e-5, 1e7
 # Steps below this are whole divisions of it [s], so that they do not depend on the usual sample rates.
 DIVIDED = 1e-5
@@ -20,14 +20,13 @@ DIVIDED = 1e-5
 def default_step(arrays: Assembly, scheme: Scheme, duration: float) -> float:
     """Return the longest default step of a system [s]; a run shortens it to a whole division of its sample interval.
 
-    It is the scheme's fraction of its limit for the modes kept, at most a 32nd of the shortest period of lumped masses
-    on their springs and closed contacts, and with such masses at most 10 µs, unless that takes more than ten million
-    steps.
+    It is the scheme's fraction of its limit for the modes kept, and at most a fortieth of the shortest period of lumped
+    masses on their springs and closed contacts. Impacts and stops of masses that do not vibrate have no time scale:
+    with them it is at most 10 µs, unless that takes more than ten million steps.
     """
     step = scheme.default_fraction * Stepping(arrays, scheme).limit
     if arrays.lumped.any():
-        step = min(step, max(LONGEST, duration / MOST_STEPS))
         fastest = fastest_vibration(arrays, duration)
-        if fastest > 0.0:
-            step = min(step, 2.0 * np.pi / (PER_PERIOD * fastest))
+        longest = 2.0 * np.pi / (PER_PERIOD * fastest) if fastest > 0.0 else max(LONGEST, duration / MOST_STEPS)
+        step = min(step, longest)
     return float(step if step >= DIVIDED else DIVIDED / np.ceil(DIVIDED / step - 1e-9))
