@@ -3,12 +3,12 @@
 import numba
 
 from . import layout as at
-from .contact import SLIDING, STICKING, closed_share, landed_share, stuck_share, velocity_at
+from .contact import SLIDING, STICKING, closed_share, landed_share, stuck_share
 from .friction import set_valued
 from .lanes import anywhere, choose, held, hold, magnitude, read
 from .modes import OPTIONS
 from .pressing import stored_in
-from .solves import carried_by, next_states, strayed
+from .solves import carried_by, next_on_way, strayed
 from .yielding import path_of, yields_of
 
 
@@ -49,7 +49,9 @@ def share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, 
     add(sums, tally + at.STUCK_STEPS, run, choose(sticks, 1.0, zero), zero)
     add(sums, tally + at.SLID_STEPS, run, choose(status > SLIDING - 0.5, 1.0, zero), zero)
     anchor = held(carried, base + at.ANCHOR, run, zero)
-    begun = choose(stuck, anchor, held(carried, base + at.MATERIAL, run, zero))
+    # On its way through the step a contact may stop after a slip.
+    stopped = zero if law == at.COULOMB else moved[3]
+    begun = choose(stuck, anchor, held(carried, base + at.MATERIAL, run, zero) + stopped)
     hold(carried, base + at.ANCHOR, run, choose(sticks, begun, anchor))
     return choose(apart, zero, closed)
 
@@ -71,13 +73,13 @@ def driven_work(i, touch, motion, n, run, runs, zero):
 
 
 @numba.njit(**OPTIONS)
-def keep_state(i, slip, status, before, carried, contacts, step, run, runs, zero):
-    """Carry the state of the law of contact `i` to the next step."""
+def next_of(i, touch, moved, w, away, before, contacts, step, run, runs, zero):
+    """Return the past part of the ratio of contact `i` for the next step, the state of its law, whether it stays put."""
     law, laws, number = contacts.codes[i], contacts.laws, i * runs + run
-    if not set_valued(law):
-        velocity = velocity_at(slip, before, step)
-        state = next_states(law, laws, number, status, before[3], velocity, step)
-        hold(carried, i * at.CARRIED + at.FRICTION_STATE, run, state)
+    if law == at.COULOMB:
+        return zero, before[3], zero
+    let_go = held(contacts.now, i * at.IN_STEP + at.LET_GO, run, zero)
+    return next_on_way((touch[0], touch[2]), moved[1], away, w, law, laws, number, before, let_go, step)
 
 
 @numba.njit(**OPTIONS)
@@ -102,11 +104,11 @@ def keep_tangential(i, tangential, carried, sums, run, zero):
 
 
 @numba.njit(**OPTIONS)
-def keep_motion(i, moved, before, carried, run, zero):
-    """Carry gap and slip of contact `i` to the next step."""
+def keep_motion(i, moved, stays, before, carried, run, zero):
+    """Carry gap and slip of contact `i` to the next step; one that stays put has a slip of rounding, carried as none."""
     base = i * at.CARRIED
     hold(carried, base + at.EARLIER_SLIP, run, before[1])
-    hold(carried, base + at.LAST_SLIP, run, moved[3])
+    hold(carried, base + at.LAST_SLIP, run, choose(stays > 0.5, zero, moved[3]))
     hold(carried, base + at.EARLIER_GAP, run, held(carried, base + at.LAST_GAP, run, zero))
     hold(carried, base + at.LAST_GAP, run, moved[2])
     add(carried, base + at.MATERIAL, run, moved[3], zero)
@@ -158,6 +160,7 @@ def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, run
         held(contacts.now, i * at.IN_STEP + at.GIVE, run, zero),
         held(contacts.now, i * at.IN_STEP + at.BEYOND, run, zero),
     )
+    stays = zero
     w, moved = (w[0] + give, w[1], w[2], w[3]), (moved[0] + beyond, moved[1], moved[2], moved[3])
     if not set_valued(law) or anywhere(touch[2] + before[0] > 0.5):
         away = strayed(carried, i, run, zero)
@@ -167,11 +170,13 @@ def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, run
             driven = driven_work(i, touch, imposed.motion, n, run, runs, zero)
             add(state.energies, at.CONTACT_WORK, run, -driven, zero)
             add(state.energies, at.DRIVE_WORK, run, driven, zero)
-        keep_state(i, moved[3], touch[2], before, carried, contacts, timing.step, run, runs, zero)
+        past, friction_state, stays = next_of(i, touch, moved, w, away, before, contacts, timing.step, run, runs, zero)
+        hold(carried, i * at.CARRIED + at.PAST_RATIO, run, past)
+        hold(carried, i * at.CARRIED + at.FRICTION_STATE, run, friction_state)
         lost = keep_forces(i, touch, moved, carried, contacts, closed, run, zero)
         keep_tangential(i, touch[1], carried, sums, run, zero)
         add(state.energies, at.FRICTION_LOSS, run, lost, zero)
-    keep_motion(i, moved, before, carried, run, zero)
+    keep_motion(i, moved, stays, before, carried, run, zero)
 
 
 @numba.njit(**OPTIONS)

@@ -11,13 +11,15 @@ import numba
 from numba.extending import overload
 
 from . import layout as at
-from .contact import QUADRATIC, SLIDING, STICKING, TRIALS, velocity_at
+from .contact import SLIDING, STICKING, velocity_at
 from .friction import STRICT, bristles_over, sticking_speed
 from .lanes import lane, with_lane
 from .vectors import LANES, VECTOR
 
 # Relative rounding of a normal force, and of the terms of a velocity.
 ROUND_OFF = 1e-15
+# Trials of a root search, and the relative step of Newton's method whose square is round-off.
+TRIALS, QUADRATIC = 200, 1e-8
 
 
 @numba.njit(inline="always", **STRICT)

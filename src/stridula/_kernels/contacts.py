@@ -67,27 +67,15 @@ def start_from_last(contacts, carried, touching, sizes, run, zero):
             displace(faces, sizes.faces, i, run, normal, tangential)
 
 
-@numba.njit(**OPTIONS)
-def carried_or_found(carried, i, let_go, normal, tangential, run, zero):
-    """Return the numbers that contact `i` carries; when it is late, with forces of the last sweep as the last forces.
-
-    A weakening law has slow and fast slips for the same forces; from the ratio of the last sweep it keeps one of them.
-    """
-    status, last_slip, earlier_slip, state, last_normal, last_tangential = carried_by(carried, i, run, zero)
-    late = choose(let_go > 0.0, normal, zero) > 0.0
-    last_normal, last_tangential = choose(late, normal, last_normal), choose(late, tangential, last_tangential)
-    return status, last_slip, earlier_slip, state, last_normal, last_tangential
-
-
 @numba.njit(**PASTED)
-def forces_of_this(i, gap, slip, w, forces, contacts, carried, let_go, step, run, runs, zero):
+def forces_of_this(i, gap, slip, w, contacts, carried, let_go, step, run, runs, zero):
     """Return normal force, tangential force, status and whether it jams, for contact `i` of the plane."""
     away, at_rest = (
         strayed(carried, i, run, zero),
         held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero),
     )
     law, number = contacts.codes[i], i * runs + run
-    before = carried_or_found(carried, i, let_go, forces[0], forces[1], run, zero)
+    before = carried_by(carried, i, run, zero)
     yields = yields_of(i, contacts.constants, run, zero)
     if not yields_anywhere(yields):
         return forces_of_one(gap, slip, away, w, law, contacts.laws, number, at_rest, before, let_go, step, zero)
@@ -160,7 +148,7 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
             gap -= w[0] * was_normal - w[1] * was_tangential
             slip -= w[2] * was_normal - w[3] * was_tangential
             normal, tangential, status, jammed = forces_of_this(
-                i, gap, slip, w, (was_normal, was_tangential), contacts, carried, let_go, step, run, runs, zero
+                i, gap, slip, w, contacts, carried, let_go, step, run, runs, zero
             )
         goes_on = done < 0.5
         normal, tangential = choose(goes_on, normal, was_normal), choose(goes_on, tangential, was_tangential)

@@ -12,8 +12,8 @@ from .bookkeeping import (
     keep_forces,
     keep_motion,
     keep_place,
-    keep_state,
     keep_tangential,
+    next_of,
     share_states,
     store_in,
 )
@@ -103,11 +103,20 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
     forces = pair_of(now, here + at.TANGENTIAL_NOW, at.IN_STEP, run, zero)
     slips = pair_of(now, here + at.NEW_SLIP, at.IN_STEP, run, zero)
     free = pair_of(now, here + at.FREE_SLIP, at.IN_STEP, run, zero)
-    was, last, earlier, states, last_normal, last_forces = carried_in_space(carried, i, run, zero)
+    was, last, earlier, states, last_normal, last_forces, pasts = carried_in_space(carried, i, run, zero)
     c, s = direction(forces, last_forces)
-    before = (was, on(last, c, s), on(earlier, c, s), states[0], last_normal, on(last_forces, c, s))
+    before = (
+        was,
+        on(last, c, s),
+        on(earlier, c, s),
+        states[0],
+        last_normal,
+        on(last_forces, c, s),
+        on(pasts, c, s),
+    )
     law = contacts.codes[i]
     store_in(i, held(now, here + at.NEW_GAP, run, zero), contacts, state, run, zero)
+    stays = zero
     if not set_valued(law) or anywhere(status + was > 0.5):
         give, beyond = held(now, here + at.GIVE, run, zero), held(now, here + at.BEYOND, run, zero)
         moved = (
@@ -121,7 +130,7 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
         w = (w[0] + give, w[1], w[2], w[3])
         away = on((strayed(carried, i, run, zero), strayed(carried, i + 1, run, zero)), c, s)
         at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero)
-        keep_second_anchor(i, status, was, carried, run, zero)
+        keep_second_anchor(i, zero if law == at.COULOMB else slips[1], status, was, carried, run, zero)
         closed = share_states(i, touch, moved, before, carried, contacts.sums, w, away, law, at_rest, run, zero)
         if imposed.motion.shape[0] > 1:
             pushes = (normal, forces[0]), (zero, forces[1])
@@ -132,7 +141,10 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
         if law == at.LUGRE:
             keep_bristles(i, slips, (was, last, earlier, states), status, carried, contacts, timing.step, run, runs)
         else:
-            keep_state(i, moved[3], status, before, carried, contacts, timing.step, run, runs, zero)
+            past, friction_state, stays = next_of(i, touch, moved, w, away, before, contacts, timing.step, run, runs, zero)
+            hold(carried, base + at.PAST_RATIO, run, c * past)
+            hold(carried, base + at.CARRIED + at.PAST_RATIO, run, s * past)
+            hold(carried, base + at.FRICTION_STATE, run, friction_state)
         lost = keep_forces(i, touch, moved, carried, contacts, closed, run, zero)
         add(state.energies, at.FRICTION_LOSS, run, lost, zero)
         for k in range(2):
@@ -141,7 +153,7 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
         hold(carried, base + at.CARRIED + at.LAST_NORMAL, run, normal)
     gap = held(now, here + at.NEW_GAP, run, zero)
     for k in range(2):
-        keep_motion(i + k, (gap, gap, gap, slips[k]), (was, last[k]), carried, run, zero)
+        keep_motion(i + k, (gap, gap, gap, slips[k]), stays, (was, last[k]), carried, run, zero)
 
 
 @numba.njit(**PASTED)

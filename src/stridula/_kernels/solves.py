@@ -4,8 +4,8 @@ import numba
 from numba.extending import overload
 
 from . import layout as at
-from .contact import SLIDING, STICKING, solve_contact, turn_round
-from .friction import STRICT, next_state, set_valued
+from .contact import SLIDING, STICKING, ratio_under, solve_contact, turn_round
+from .friction import STRICT, set_valued
 from .lanes import anywhere, choose, everywhere, held, lane, magnitude, spread, with_lane
 from .modes import OPTIONS, PASTED
 from .vectors import LANES, VECTOR
@@ -16,9 +16,12 @@ def solve(gap, slip, strayed, w, law, laws, run, before, let_go, step):
     return solve_one_run(gap, slip, strayed, w, law, laws, run, before, let_go, step)
 
 
-def next_states(law, laws, run, status, state, velocity, step):
-    """Return the internal states after a step; where the bodies are apart, those of new contacts."""
-    return next_state_of_run(law, laws, run, status, state, velocity, step)
+def next_on_way(touch, slip, strayed, w, law, laws, run, before, let_go, step):
+    """Return the past parts of the ratios for the next step, the internal states, and where contacts stick throughout.
+
+    `touch` are normal force and status. Where bodies are apart, states are those of new contacts.
+    """
+    return next_on_way_of_run(touch, slip, strayed, w, law, laws, run, before, let_go, step)
 
 
 @numba.njit(inline="always", **STRICT)
@@ -66,20 +69,35 @@ def solve_one_run(gap, slip, strayed, w, law, laws, run, before, let_go, step):
 
 
 @numba.njit(**STRICT)
-def next_state_of_run(law, laws, run, status, state, velocity, step):
-    """Do `next_states` for one run."""
-    if set_valued(law):
-        return state
-    if status < 0.5:
-        return laws[run, at.LAW_PARAMETERS - 1]
-    return next_state(law, laws, run, state, velocity, step)
+def next_on_way_of_run(touch, slip, strayed, w, law, laws, run, before, let_go, step):
+    """Do `next_on_way` for one run."""
+    if touch[1] < 0.5:
+        return 0.0, laws[run, at.LAW_PARAMETERS - 1], 0.0
+    if law == at.COULOMB or (set_valued(law) and w[3] == 0.0):
+        return 0.0, before[3], 0.0
+    _, past, state, _, stays = ratio_under(touch[0], slip, strayed, w, law, laws, run, before, let_go > 0.5, step)
+    return past, state, 1.0 if stays else 0.0
+
+
+@numba.njit(**STRICT)
+def lanes_of(values, i):
+    """Return the numbers in a lane of what a contact carries."""
+    status, last, earlier, state, normal, tangential, past = values
+    return (
+        lane(status, i),
+        lane(last, i),
+        lane(earlier, i),
+        lane(state, i),
+        lane(normal, i),
+        lane(tangential, i),
+        lane(past, i),
+    )
 
 
 @numba.njit(**STRICT)
 def solve_runs(gap, slip, strayed, w, law, laws, run, before, let_go, step):
     """Do `solve` for vectors of runs."""
     normal, tangential, new, jammed = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    status, last_slip, earlier_slip, state, last_normal, last_tangential = before
     for i in range(LANES):
         one = solve_one_run(
             lane(gap, i),
@@ -89,14 +107,7 @@ def solve_runs(gap, slip, strayed, w, law, laws, run, before, let_go, step):
             law,
             laws,
             run + i,
-            (
-                lane(status, i),
-                lane(last_slip, i),
-                lane(earlier_slip, i),
-                lane(state, i),
-                lane(last_normal, i),
-                lane(last_tangential, i),
-            ),
+            lanes_of(before, i),
             lane(let_go, i),
             step,
         )
@@ -106,14 +117,27 @@ def solve_runs(gap, slip, strayed, w, law, laws, run, before, let_go, step):
 
 
 @numba.njit(**STRICT)
-def next_states_of_runs(law, laws, run, status, state, velocity, step):
-    """Do `next_states` for vectors of runs."""
-    if set_valued(law):
-        return state
+def next_on_way_of_runs(touch, slip, strayed, w, law, laws, run, before, let_go, step):
+    """Do `next_on_way` for vectors of runs."""
+    past, state, stays = spread(0.0), before[3], spread(0.0)
+    if law == at.COULOMB:
+        return past, state, stays
     for i in range(LANES):
-        one = next_state_of_run(law, laws, run + i, lane(status, i), lane(state, i), lane(velocity, i), step)
-        state = with_lane(state, i, one)
-    return state
+        one = next_on_way_of_run(
+            (lane(touch[0], i), lane(touch[1], i)),
+            lane(slip, i),
+            lane(strayed, i),
+            (lane(w[0], i), lane(w[1], i), lane(w[2], i), lane(w[3], i)),
+            law,
+            laws,
+            run + i,
+            lanes_of(before, i),
+            lane(let_go, i),
+            step,
+        )
+        past, state = with_lane(past, i, one[0]), with_lane(state, i, one[1])
+        stays = with_lane(stays, i, one[2])
+    return past, state, stays
 
 
 @overload(solve)
@@ -126,19 +150,19 @@ def _overload_solve(gap, slip, strayed, w, law, laws, run, before, let_go, step)
     return implementation
 
 
-@overload(next_states)
-def _overload_next_states(law, laws, run, status, state, velocity, step):
-    chosen = next_states_of_runs if state is VECTOR else next_state_of_run
+@overload(next_on_way)
+def _overload_next_on_way(touch, slip, strayed, w, law, laws, run, before, let_go, step):
+    chosen = next_on_way_of_runs if slip is VECTOR else next_on_way_of_run
 
-    def implementation(law, laws, run, status, state, velocity, step):
-        return chosen(law, laws, run, status, state, velocity, step)
+    def implementation(touch, slip, strayed, w, law, laws, run, before, let_go, step):
+        return chosen(touch, slip, strayed, w, law, laws, run, before, let_go, step)
 
     return implementation
 
 
 @numba.njit(**OPTIONS)
 def carried_by(carried, i, run, zero):
-    """Return status, slips of the last two steps, internal state and forces of contact `i`."""
+    """Return status, slips of the last two steps, internal state, forces and past part of the ratio of contact `i`."""
     base = i * at.CARRIED
     return (
         held(carried, base + at.STATUS, run, zero),
@@ -147,6 +171,7 @@ def carried_by(carried, i, run, zero):
         held(carried, base + at.FRICTION_STATE, run, zero),
         held(carried, base + at.LAST_NORMAL, run, zero),
         held(carried, base + at.LAST_TANGENTIAL, run, zero),
+        held(carried, base + at.PAST_RATIO, run, zero),
     )
 
 

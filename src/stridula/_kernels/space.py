@@ -121,7 +121,7 @@ def sliding_direction(gap, slips, w, mu, carried_on, guess):
 def solve_along(c, s, free, law, laws, number, before, let_go, step):
     """Solve a contact in space as one of the plane along a direction; `free` are gap, slips, strays and compliance."""
     gap, slips, strays, w = free
-    was, last, earlier, state, last_normal, last_forces, _ = before
+    was, last, earlier, state, last_normal, last_forces, _, pasts = before
     # When it is late, no reversal within the step (5d) is considered.
     was = was if let_go == 0.0 else 0.0
     return solve_one_run(
@@ -139,6 +139,7 @@ def solve_along(c, s, free, law, laws, number, before, let_go, step):
             state[0],
             last_normal,
             c * last_forces[0] + s * last_forces[1],
+            c * pasts[0] + s * pasts[1],
         ),
         let_go,
         step,
@@ -192,7 +193,8 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
     """Return normal force, both tangential forces, status and whether it jams.
 
     Arguments are those of `contact.solve_contact`, with a number for each tangent; `before` are status, slips of the
-    last two steps, internal states, forces of the last step and a guess of those along the tangents.
+    last two steps, internal states, forces of the last step, a guess of those along the tangents, and the past parts of
+    the ratios.
     """
     if gap >= 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0
@@ -325,6 +327,7 @@ def solve_runs_in_space(gap, slips, strays, w, law, laws, run, before, let_go, s
                 lane(before[4], i),
                 lane_of_pair(before[5], i),
                 lane_of_pair(before[6], i),
+                lane_of_pair(before[7], i),
             ),
             lane(let_go, i),
             step,
@@ -346,13 +349,14 @@ def _overload_solve_in_space(gap, slips, strays, w, law, laws, run, before, let_
 
 @numba.njit(**OPTIONS)
 def carried_in_space(carried, i, run, zero):
-    """Return status, slips of the last two steps, internal states and forces of a contact in space.
+    """Return status, slips of the last two steps, states, forces and past parts of the ratio of a contact in space.
 
     Only bristles have a state along the second tangent.
     """
     first, second = carried_by(carried, i, run, zero), carried_by(carried, i + 1, run, zero)
     states = first[3], second[3]
-    return first[0], (first[1], second[1]), (first[2], second[2]), states, first[4], (first[5], second[5])
+    slips = (first[1], second[1]), (first[2], second[2])
+    return first[0], *slips, states, first[4], (first[5], second[5]), (first[6], second[6])
 
 
 @numba.njit(**PASTED)
@@ -368,8 +372,8 @@ def free_of_own(contacts, carried, i, run, runs, zero):
     slip = component(faces, 2 * i + 1, DISPLACEMENT, run, zero) - (w[3] * normal - w[4] * first - w[5] * second)
     swerve = component(faces, 2 * i + 3, DISPLACEMENT, run, zero) - (w[6] * normal - w[7] * first - w[8] * second)
     strays = strayed(carried, i, run, zero), strayed(carried, i + 1, run, zero)
-    was, last, earlier, states, last_normal, last_forces = carried_in_space(carried, i, run, zero)
-    before = (was, last, earlier, states, last_normal, last_forces, (first, second))
+    was, last, earlier, states, last_normal, last_forces, pasts = carried_in_space(carried, i, run, zero)
+    before = (was, last, earlier, states, last_normal, last_forces, (first, second), pasts)
     return (gap, (slip, swerve), strays, w, contacts.codes[i], i * runs + run, before), contacts.laws
 
 
@@ -450,12 +454,12 @@ def free_in_space(contacts, sizes, run, zero):
 
 
 @numba.njit(**OPTIONS)
-def keep_second_anchor(i, status, was, carried, run, zero):
+def keep_second_anchor(i, stopped, status, was, carried, run, zero):
     """Carry the anchor of a stick of contact `i` along its second tangent."""
     base = (i + 1) * at.CARRIED
     stuck, sticks = magnitude(was - STICKING) < 0.5, magnitude(status - STICKING) < 0.5
     anchor = held(carried, base + at.ANCHOR, run, zero)
-    begun = choose(stuck, anchor, held(carried, base + at.MATERIAL, run, zero))
+    begun = choose(stuck, anchor, held(carried, base + at.MATERIAL, run, zero) + stopped)
     hold(carried, base + at.ANCHOR, run, choose(sticks, begun, anchor))
 
 

@@ -1,4 +1,4 @@
-"""Step 5 for contacts with a stiffness: a force that grows with the indentation, in place of a unilateral constraint."""
+"""Step 5 for contacts with a stiffness: a force that grows with the indentation replaces the unilateral constraint."""
 
 import numba
 
@@ -67,8 +67,9 @@ def is_settled(reached, normal, give, beyond, w_nn, gap, yields):
 def forces_yielding(free, friction, before, let_go, step, yields, path, zero):
     """Return the result of `forces_of_one` for a yielding contact, with its give and the indentation beyond that.
 
-    Newton's method for the indentation, from that without force. `free` are gap, slip, distance of a stick from its anchor, compliance; `friction` the law, all laws, the number
-    among these and the ratio at rest; `path` the indentations of the last two steps.
+    Newton's method for the indentation, from that without force. `free` are gap, slip, distance of a stick from its
+    anchor, compliance; `friction` the law, all laws, the number among these and the ratio at rest; `path` the
+    indentations of the last two steps.
     """
     gap, slip, away, w = free
     law, laws, number, at_rest = friction

@@ -9,7 +9,7 @@ import numpy as np
 from .._kernels import layout as at
 from .._kernels.bristles import bristles_ratio, next_bristles_of_run
 from .._kernels.contact import SEPARATED, SLIDING, STICKING
-from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
+from .._kernels.friction import set_valued, sliding_ratio, state_ratio
 from .._kernels.pressing import stored_in_one
 from ..arrays import Array
 from ..checks import ArgumentError
@@ -54,6 +54,7 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
         carried = start.carried(first)
         carried[closed[:, None], [at.LAST_NORMAL, at.LAST_TANGENTIAL]] = forces
         pressed = closed[forces[:, 0] > 0.0]
+        carried[pressed, at.PAST_RATIO] = 0.5 * forces[forces[:, 0] > 0.0, 1] / forces[forces[:, 0] > 0.0, 0]
         carried[pressed, at.CLOSED_SHARE] = 1.0
         carried[pressed, at.STATUS] = np.where(start.slip_speeds[pressed] == 0.0, STICKING, SLIDING)
     modal, energies = np.stack([arrays.position, first]), np.zeros(at.ENERGIES)
@@ -164,32 +165,25 @@ class _Start:
             if one.contact.has_state_vector:
                 carried[i, at.FRICTION_STATE] = self._bristles_before(int(self.first[i]))[i - self.first[i]]
             elif not one.is_second:
-                speed = float(self.slip_speeds[i] if one.contact.is_spatial else self.speeds[i])
-                carried[i, at.FRICTION_STATE] = self._state_before(i, one, speed)
+                carried[i, at.FRICTION_STATE] = self.arrays.friction_state[i]
         carried[:, at.ANCHOR], carried[:, at.LAST_GAP] = carried[:, at.MATERIAL], self.gaps
         carried[:, at.EARLIER_GAP] = self.gaps - self.rows[self.first, 0] @ first - self.before[self.first, 2]
         carried[:, at.ABSCISSA_BEFORE] = carried[:, at.ABSCISSA] - self.travels @ first - tip
         carried[:, at.LAST_SLIP] = self.rows[:, 1] @ first + tip - track
+        # A contact at rest has not slipped, for what its forces will turn out to be.
+        carried[carried[:, at.STATUS] == STICKING, at.LAST_SLIP] = 0.0
         # One step earlier, with the same acceleration.
         carried[:, at.EARLIER_SLIP] = 3.0 * carried[:, at.LAST_SLIP] - 2.0 * self.step * self.speeds
         return carried
 
     def _bristles_before(self, number: int) -> Array:
-        """Return the bristles of a contact in space half a step before the start, as in `_state_before`."""
+        """Return the bristles of a contact in space half a step before the start, as the march has them.
+
+        They are the mirror image of the half step after the start: unlike backward integration, it does not grow.
+        """
         states, speeds = (tuple(values[number : number + 2]) for values in (self.arrays.friction_state, self.speeds))
         after = next_bristles_of_run(self.contacts.laws, number, float(SLIDING), states, speeds, self.step / 2.0)
         return np.asarray(2.0 * np.array(states) - np.array(after))
-
-    def _state_before(self, i: int, one: ContactRows, velocity: float) -> float:
-        """Return the internal state of a law half a step before the start, as the march has it between the steps."""
-        law = one.contact.friction
-        if not law.has_state:
-            return 0.0
-        state = float(self.arrays.friction_state[i])
-        code = int(self.contacts.codes[i])
-        # The mirror image of the half step after the start: unlike backward integration, it does not grow.
-        before = 2.0 * state - float(next_state(code, self.contacts.laws, i, state, velocity, self.step / 2.0))
-        return max(before, state / 2.0) if law.state_is_positive else before
 
     def pushes(self, closed: Array) -> Array:
         """Return the rows of closed contacts, normal and tangent alternately."""

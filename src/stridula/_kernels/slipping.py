@@ -1,0 +1,230 @@
+"""Step 5c for laws whose friction changes within a step: the slip velocity on its way through the step.
+
+The tangential force of step n is the mean over the two steps about it, weighted by a triangle, which moves a mass
+exactly. Its second half lies on the way from n to n + 1, which the slip takes under its own friction: stops, reversals
+and starts lie where they are on it, and only one solution exists however steeply a law falls. The first half was found
+on the way before; a contact carries it as its `past` ratio. Times s are shares of the step, velocities are slips ``u``
+in a step: ``u' = drive - pull r`` with the ratio r of the forces, ``pull`` the slip for a ratio of one in a step.
+"""
+
+import math
+
+import numba
+
+from . import layout as at
+from .friction import (
+    STRICT,
+    holding_ratio,
+    next_state,
+    sliding_ratio,
+    speed_scale,
+    state_ratio,
+    state_ratio_and_slope,
+)
+
+SEPARATED, STICKING, SLIDING = 0, 1, 2
+# Most parts into which the way through a step is divided, and reversals on it.
+MOST_PARTS, REVERSALS = 64, 3
+# Change of the slip in a part, relative to the scale of the law; phase of bristles in a part; ageing in a part.
+PART, PHASE, AGEING = 0.5, 0.35, 1.0
+# Steps of Newton's method and trials of a bracketed search for the velocity of a part, and their relative accuracy.
+NEWTON, TRIALS, SETTLED = 8, 200, 1e-13
+
+
+@numba.njit(inline="always", **STRICT)
+def moments(begin, end, first, middle, last):
+    """Return the integrals of a ratio over a part with the weights ``1 - s`` and ``s``, by Simpson's rule."""
+    half, size = 0.5 * (begin + end), (end - begin) / 6.0
+    later = size * ((1.0 - begin) * first + 4.0 * (1.0 - half) * middle + (1.0 - end) * last)
+    return later, size * (begin * first + 4.0 * half * middle + end * last)
+
+
+@numba.njit(inline="always", **STRICT)
+def ratio_of(slip, sense, law, laws, i, step):
+    """Return the signed ratio of a set-valued law at a slip, that of incipient sliding if it is against the sense."""
+    return sense * sliding_ratio(law, laws, i, max(sense * slip, 0.0) / step)
+
+
+@numba.njit(**STRICT)
+def parts_of(reach, pull, law, laws, i, step):
+    """Return the number of parts of the way, for the largest change of the slip."""
+    if law == at.STATIC_KINETIC:
+        return 1
+    count = 1.0 + reach / (PART * speed_scale(law, laws, i, 0.0) * step)
+    if law == at.STRIBECK:
+        # Viscous friction brakes a slip at this rate.
+        count = max(count, 1.0 + pull * laws[i, 4] / step)
+    return int(min(count, float(MOST_PARTS)))
+
+
+@numba.njit(**STRICT)
+def slide_through(slip, begin, drive, pull, sense, law, laws, i, step):
+    """Slide from a time of the step on, under a set-valued law.
+
+    `drive` are its value at the beginning of the step and its change over it.
+
+    Returns
+    -------
+    later, past : float
+        Ratio of the rest of the step, weighted for this step and for the next.
+    sticks : bool
+        Whether the contact ends at rest.
+    """
+    later, past, held = 0.0, 0.0, holding_ratio(law, laws, i, True)
+    for _ in range(REVERSALS):
+        reach = abs(drive[0]) + abs(drive[1]) + pull * laws[i, 0]
+        count = parts_of(reach * (1.0 - begin), pull, law, laws, i, step)
+        part, stops = (1.0 - begin) / count, False
+        for k in range(count):
+            end = 1.0 if k == count - 1 else begin + part
+            size = end - begin
+            middle = drive[0] + drive[1] * (begin + 0.5 * size)
+            r1 = ratio_of(slip, sense, law, laws, i, step)
+            rate = drive[0] + drive[1] * begin - pull * r1
+            r2 = ratio_of(slip + 0.5 * size * rate, sense, law, laws, i, step)
+            r3 = ratio_of(slip + 0.5 * size * (middle - pull * r2), sense, law, laws, i, step)
+            r4 = ratio_of(slip + size * (middle - pull * r3), sense, law, laws, i, step)
+            new = slip + size * (middle - pull * (r1 + 2.0 * (r2 + r3) + r4) / 6.0)
+            if sense * new < 0.0:
+                # It stops on the parabola with this beginning, slope and end.
+                bent = (new - slip - rate * size) / (size * size)
+                under = math.sqrt(max(rate * rate - 4.0 * bent * slip, 0.0))
+                after = -2.0 * slip / (rate - sense * under) if slip != 0.0 else 0.0
+                after = min(max(after, 0.0), size)
+                half = slip + 0.5 * after * (rate + 0.5 * after * bent)
+                at_half, at_end = ratio_of(half, sense, law, laws, i, step), ratio_of(0.0, sense, law, laws, i, step)
+                more, less = moments(begin, begin + after, r1, at_half, at_end)
+                later, past, begin, stops = later + more, past + less, begin + after, True
+                break
+            more, less = moments(begin, end, r1, 0.5 * (r2 + r3), r4)
+            later, past, begin, slip = later + more, past + less, end, new
+        if not stops:
+            return later, past, False
+        first, last = drive[0] + drive[1] * begin, drive[0] + drive[1]
+        if max(abs(first), abs(last)) <= held * pull and pull > 0.0:
+            more, less = moments(begin, 1.0, first / pull, 0.5 * (first + last) / pull, last / pull)
+            return later + more, past + less, True
+        slip, sense = 0.0, 1.0 if first > 0.0 else -1.0
+    return later, past, False
+
+
+@numba.njit(**STRICT)
+def ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step):
+    """Return the ratio of forces over a step under a set-valued law, its past part, status and whether held.
+
+    `normal` is the normal force, `slip` the slip without the forces of this contact; other arguments as in
+    `contact.solve_contact`. A contact is held if it sticks throughout the step.
+    """
+    was, last, past = before[0], before[1], before[6]
+    pull, moved = w[3] * normal, slip + w[2] * normal
+    held = holding_ratio(law, laws, i, was == STICKING and not let_go)
+    needed = (moved + strayed) / pull if pull > 0.0 else math.copysign(math.inf, moved + strayed)
+    if was == STICKING and last == 0.0:
+        # At rest for a step or more: the force grows through the step as it did in the last one.
+        earlier = before[5] / before[4] if before[4] > 0.0 else needed
+        grows = needed - earlier
+        if not let_go and abs(needed) <= held and abs(needed + grows) <= held:
+            return needed, 0.5 * needed + grows / 3.0, STICKING, True
+        sense = 1.0 if needed + grows > 0.0 else -1.0
+        if abs(needed) > held:
+            sense = 1.0 if needed > 0.0 else -1.0
+        broke = 0.0
+        if abs(needed) < held:
+            broke = min(max((sense * held - needed) / grows, 0.0), 1.0)
+        first, less = moments(0.0, broke, needed, needed + 0.5 * broke * grows, needed + broke * grows)
+        more, rest, sticks = slide_through(0.0, broke, (pull * needed, pull * grows), pull, sense, law, laws, i, step)
+        ratio = 0.5 * needed - grows / 6.0 + first + more
+        return ratio, less + rest, STICKING if sticks else SLIDING, False
+    if was == STICKING:
+        # It came to rest within the last step.
+        short = 2.0 * (needed - past)
+        if not let_go and abs(short) <= held:
+            return needed, 0.5 * needed, STICKING, True
+        sense = 1.0 if short > 0.0 else -1.0
+        more, rest, sticks = slide_through(0.0, 0.0, (pull * short, 0.0), pull, sense, law, laws, i, step)
+        return past + more, rest, STICKING if sticks else SLIDING, False
+    begun = 0.5 * (last + moved)
+    if was != SLIDING:
+        # It lands: half of its force acts before the step.
+        if not let_go and abs(needed) <= held:
+            return needed, 0.5 * needed, STICKING, True
+        sense = 1.0 if begun > 0.0 else -1.0
+        past = 0.5 * ratio_of(begun, sense, law, laws, i, step)
+    slip_at_step, drive = begun - pull * past, moved - last
+    sense = 1.0 if slip_at_step > 0.0 or (slip_at_step == 0.0 and drive > 0.0) else -1.0
+    more, rest, sticks = slide_through(slip_at_step, 0.0, (drive, 0.0), pull, sense, law, laws, i, step)
+    return past + more, rest, STICKING if sticks else SLIDING, False
+
+
+@numba.njit(**STRICT)
+def velocity_of_part(slip, size, drive, pull, law, laws, i, state, step):
+    """Return the slip velocity in the middle of a part under a law with internal state, by the midpoint rule.
+
+    Newton's method from the velocity at its beginning, then a bracketed search on the scale ``sinh(y)``, so that creep
+    and sliding share one scale.
+    """
+    half, time = 0.5 * size / step, size * step
+    free, pulled = slip / step + half * drive, half * pull
+    velocity = slip / step
+    for _ in range(NEWTON):
+        ratio, slope = state_ratio_and_slope(law, laws, i, state, velocity, time)
+        steepness = 1.0 + pulled * slope
+        if not steepness > 0.0:
+            break
+        change = (free - pulled * ratio - velocity) / steepness
+        if abs(change) <= SETTLED * abs(velocity + change):
+            return velocity + change
+        if law != at.LUGRE and velocity * (velocity + change) <= 0.01 * velocity * velocity:
+            break
+        velocity += change
+    sense = 1.0 if free - pulled * state_ratio(law, laws, i, state, 0.0, time) >= 0.0 else -1.0
+    scale, reach = speed_scale(law, laws, i, state), max(abs(free), 1e-300)
+    low, high = 0.0, 0.0
+    for _ in range(TRIALS):
+        velocity = sense * reach
+        high = math.asinh(reach / scale)
+        if sense * (velocity - free + pulled * state_ratio(law, laws, i, state, velocity, time)) >= 0.0:
+            break
+        low, reach = high, 2.0 * reach
+    for _ in range(TRIALS):
+        if high - low <= 1e-15 * high:
+            break
+        y = 0.5 * (low + high)
+        velocity = sense * scale * math.sinh(y)
+        if sense * (velocity - free + pulled * state_ratio(law, laws, i, state, velocity, time)) >= 0.0:
+            high = y
+        else:
+            low = y
+    return sense * scale * math.sinh(0.5 * (low + high))
+
+
+@numba.njit(**STRICT)
+def parts_with_state(slip, drive, pull, law, laws, i, step):
+    """Return the number of parts of the way under a law with internal state."""
+    if law == at.LUGRE:
+        change = (abs(drive) + pull * laws[i, 0]) / (4.0 * laws[i, 2] * step)
+        count = 1.0 + max(math.sqrt(pull * laws[i, 3]) / PHASE, change)
+    else:
+        count = 2.0 + (abs(slip) + abs(drive)) / (AGEING * laws[i, 3])
+    return int(min(count, float(MOST_PARTS)))
+
+
+@numba.njit(**STRICT)
+def ratio_with_state(normal, slip, w, law, laws, i, before, step):
+    """Return the ratio of forces over a step under a law with internal state, its past part, and the new state."""
+    was, last, state, past = before[0], before[1], before[3], before[6]
+    pull, moved = w[3] * normal, slip + w[2] * normal
+    begun, drive = 0.5 * (last + moved), moved - last
+    if was == SEPARATED:
+        past = 0.5 * state_ratio(law, laws, i, state, begun / step, 1e-9 * step)
+    slip_now = begun - pull * past
+    count = parts_with_state(slip_now, drive, pull, law, laws, i, step)
+    size, later, rest = 1.0 / count, 0.0, 0.0
+    for k in range(count):
+        velocity = velocity_of_part(slip_now, size, drive, pull, law, laws, i, state, step)
+        ratio = state_ratio(law, laws, i, state, velocity, size * step)
+        middle = (k + 0.5) * size
+        later, rest = later + size * (1.0 - middle) * ratio, rest + size * middle * ratio
+        slip_now = 2.0 * velocity * step - slip_now
+        state = next_state(law, laws, i, state, velocity, size * step)
+    return past + later, rest, state
