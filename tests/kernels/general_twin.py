@@ -18,10 +18,10 @@ from types import SimpleNamespace
 import numpy as np
 from scipy.linalg import expm
 from scipy.linalg.lapack import dgesv
-from scipy.optimize import brentq, root
 
 import stridula as st
 from kernels.twin import stuck_until
+from kernels.way_twin import on_its_way
 
 SEPARATED, STICKING, SLIDING = 0, 1, 2
 KEPT = ["normal", "tangential", "status", "landings", "share", "position", "gap", "height", "state", "solutions"]
@@ -123,18 +123,19 @@ def ratio_with_state(law, state, v, h):
     return law.a * np.arcsinh(v / (2 * law.velocity) * np.exp(exponent))
 
 
-def bend(law, state):
-    """Slip speed above which the ratio of a law departs from its linear part."""
-    if isinstance(law, st.RateAndState):
-        exponent = (law.reference + law.b * np.log(law.velocity * state / law.slip_distance)) / law.a
-        return 2 * law.velocity * np.exp(-exponent)
-    return law.static / law.slope if isinstance(law, st.LinearWeakening) else law.velocity
-
-
 def state_of_new(law):
     if isinstance(law, st.RateAndState):
         return law.slip_distance / law.velocity if law.initial_state is None else law.initial_state
     return 0.0
+
+
+LAWS = SimpleNamespace(
+    curve=curve,
+    held_up_to=held_up_to,
+    state_after=state_after,
+    ratio_with_state=ratio_with_state,
+    set_valued=lambda law: not has_state(law),
+)
 
 
 # The contacts of one step.
@@ -144,12 +145,7 @@ def states_of(before):
     """Possible states of a contact: `given` is the ratio of its forces, if its motion at the start determines it."""
     if before.given is not None:
         return "open", "given"
-    return ("open", "slide with state") if has_state(before.law) else ("open", "stick", 1, -1, "back")
-
-
-def velocity_of(slip, before, h):
-    """Slip velocity between the last step and this one, from three slips; see the model."""
-    return (9 * slip + 6 * before.last_slip + before.earlier_slip) / (16 * h)
+    return ("open", "stick", 1, -1, "back") if isinstance(before.law, st.Coulomb) else ("open", "way")
 
 
 def solved(left, right):
@@ -165,7 +161,7 @@ def turned(gap, slip, own, before, let_go):
 
     It slides on for a share of the step; for the rest it is held, or slides back. Forces are means over the step.
     """
-    if before.status != SLIDING or has_state(before.law) or before.last_slip == 0 or gap >= 0:
+    if before.status != SLIDING or not isinstance(before.law, st.Coulomb) or before.last_slip == 0 or gap >= 0:
         return None
     ratio = np.sign(before.last_slip) * curve(before.law, 0.0)
     stiff = own[0, 0] - np.array([ratio, -ratio]) * own[0, 1]
@@ -211,10 +207,11 @@ def solve_contacts(gaps, slips, strayed, w, before, h, guess=None, let_go=()):
             if kind == "given":
                 outcome.append((SLIDING, normal, tangential))
                 continue
-            velocity = velocity_of(slips[i] + w[2 * i + 1] @ forces, before[i], h)
-            if kind == "slide with state":
-                small = before[i].law.velocity
-                outcome.append((STICKING if abs(velocity) < small else SLIDING, normal, tangential))
+            if kind == "way":
+                if normal <= 0:
+                    break
+                status = on_its_way(LAWS, before[i], normal, slip, strayed[i], own, h, i in let_go)[3]
+                outcome.append((status, normal, tangential))
                 continue
             turn = turned(gap, slip, own, before[i], i in let_go)
             if turn or kind == "back":
@@ -243,94 +240,53 @@ def solve_contacts(gaps, slips, strayed, w, before, h, guess=None, let_go=()):
 def forces_of(combination, gaps, slips, strayed, w, before, h, let_go):
     """Forces (N1, -T1, N2, ...) of a combination of states, or None.
 
-    The ratio of a contact that reverses depends on the forces of the others: it is iterated.
+    The ratio of a contact that reverses, or goes its way, depends on the forces of all: it is iterated.
     """
-    backs = [i for i, kind in enumerate(combination) if kind == "back"]
-    ratios = dict.fromkeys(backs, 0.0)
-    for _ in range(100):
-        forces = forces_at(ratios, combination, gaps, slips, strayed, w, before, h)
+    free = [i for i, kind in enumerate(combination) if kind in ("back", "way")]
+    ratios = {i: before[i].tangential / before[i].normal if before[i].normal > 0 else 0.0 for i in free}
+    for _ in range(300):
+        forces = forces_at(ratios, combination, gaps, slips, strayed, w, before)
         if forces is None or not np.all(np.isfinite(forces)):
             return None
         found = {}
-        for i in backs:
+        for i in free:
             others, pair = forces.copy(), slice(2 * i, 2 * i + 2)
             others[pair] = 0.0
             gap, slip = gaps[i] + w[2 * i] @ others, slips[i] + w[2 * i + 1] @ others
+            if combination[i] == "way":
+                if gap >= 0 or forces[2 * i] <= 0:
+                    return None
+                found[i] = on_its_way(LAWS, before[i], forces[2 * i], slip, strayed[i], w[pair, pair], h, i in let_go)[
+                    0
+                ]
+                continue
             turn = turned(gap, slip, w[pair, pair], before[i], i in let_go)
             if not turn:
                 return None
             found[i] = turn[2] / turn[1]
-        if all(abs(found[i] - ratios[i]) <= 1e-16 for i in backs):
+        if all(abs(found[i] - ratios[i]) <= 1e-15 * max(abs(found[i]), 0.1) for i in free):
             break
         ratios = found
     return forces
 
 
-def forces_at(ratios, combination, gaps, slips, strayed, w, before, h):
-    """Forces of a combination, with given ratios for reversals; linear except for the velocities of sliding."""
-    laws = [b.law for b in before]
-    curved = [
-        i
-        for i, kind in enumerate(combination)
-        if kind in ("slide with state", 1, -1) and not isinstance(laws[i], (st.Coulomb, st.StaticKinetic))
-    ]
-
-    def given(velocities):
-        speeds = dict(zip(curved, velocities, strict=True))
-        left, right = np.eye(len(w)), np.zeros(len(w))
-        for i, kind in enumerate(combination):
-            if kind == "open":
-                continue
-            left[2 * i], right[2 * i] = w[2 * i], -gaps[i]
-            if kind == "stick":
-                left[2 * i + 1], right[2 * i + 1] = w[2 * i + 1], -slips[i] - strayed[i]
-                continue
-            if kind == "given":
-                ratio = before[i].given
-            elif kind == "back":
-                ratio = ratios[i]
-            elif kind == "slide with state":
-                ratio = ratio_with_state(laws[i], before[i].state, speeds[i], h)
-            else:
-                ratio = kind * curve(laws[i], max(kind * speeds.get(i, 0.0), 0.0))
-            left[2 * i + 1] = 0.0
-            left[2 * i + 1, 2 * i : 2 * i + 2] = ratio, 1.0
-        try:
-            return solved(left, right)
-        except np.linalg.LinAlgError:
-            return np.full(len(w), np.nan)
-
-    def error(velocities):
-        forces = given(velocities)
-        return np.array(velocities) - [velocity_of(slips[i] + w[2 * i + 1] @ forces, before[i], h) for i in curved]
-
-    if not curved:
-        return given([])
-    free = [velocity_of(slips[i], before[i], h) for i in curved]
-    if len(curved) == 1:
-        sense = combination[curved[0]]
-        if sense in (1, -1) and sense * error([0.0])[0] >= 0:
-            return given([0.0])  # Moved against the sense on average: it turned within the step.
-        reach = abs(free[0]) + 1e-12
-        for _ in range(60):
-            ends = (-reach, reach) if sense not in (1, -1) else tuple(sorted((0.0, sense * reach)))
-            values = [error([v])[0] for v in ends]
-            if not np.all(np.isfinite(values)):
-                return None
-            if values[0] * values[1] <= 0:
-                v = brentq(lambda v: error([v])[0], *ends, xtol=1e-30, rtol=4 * np.finfo(float).eps)
-                return given([v])
-            reach *= 2
-        return None
-    # v = s sinh(y), so that creep and sliding have similar scales.
-    scales = np.array([bend(laws[i], before[i].state) for i in curved])
-    unit = np.abs(free).max() + max(abs(before[i].last_slip) / h for i in curved) + 1e-12
-    for start in ([before[i].last_slip / h for i in curved], free):
-        y = np.arcsinh(np.array(start) / scales)
-        found = root(lambda y: error(scales * np.sinh(y)) / unit, y, method="hybr", tol=1e-15)
-        if np.abs(found.fun).max() < 1e-10:
-            return given(scales * np.sinh(found.x))
-    return None
+def forces_at(ratios, combination, gaps, slips, strayed, w, before):
+    """Forces of a combination, with given ratios where they are not those of sliding."""
+    left, right = np.eye(len(w)), np.zeros(len(w))
+    for i, kind in enumerate(combination):
+        if kind == "open":
+            continue
+        left[2 * i], right[2 * i] = w[2 * i], -gaps[i]
+        if kind == "stick":
+            left[2 * i + 1], right[2 * i + 1] = w[2 * i + 1], -slips[i] - strayed[i]
+            continue
+        ratio = before[i].given if kind == "given" else ratios[i] if i in ratios else kind * curve(before[i].law, 0.0)
+        left[2 * i + 1] = 0.0
+        left[2 * i + 1, 2 * i : 2 * i + 2] = ratio, 1.0
+    try:
+        return solved(left, right)
+    except np.linalg.LinAlgError:
+        return np.full(len(w), np.nan)
 
 
 # The system as matrices.
@@ -427,7 +383,8 @@ class Touch:
         self.along_plate = isinstance(contact.track, st.ModalPlate)
         self.law = contact.friction
         self.status, self.state, self.anchor = SEPARATED, state_of_new(self.law), 0.0
-        self.material = self.place = self.place_before = self.last_slip = self.earlier_slip = 0.0
+        self.material = self.place = self.place_before = self.last_slip = self.past = 0.0
+        self.drive, self.stays = np.nan, False
         self.normal = self.tangential = self.closed = self.gap = 0.0
         self.given = None
 
@@ -505,14 +462,11 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             one.last_slip = slip_row @ (q - q_before) + (tip - tip_before) - (track - track_before)
             one.place, one.place_before = one.abscissa(q, tip), one.abscissa(q_before, tip_before)
             speed = slip_row @ velocity + (tip_after - tip_before - track_after + track_before) / (2 * h)
-            if has_state(one.law):
-                # The state is kept between the steps: half a step back along the line, never below half of it.
-                new = state_of_new(one.law)
-                one.state = 2 * new - state_after(one.law, new, speed, h / 2)
-                one.state = max(one.state, new / 2) if isinstance(one.law, st.RateAndState) else one.state
-            one.earlier_slip = 3 * one.last_slip - 2 * h * speed
+            one.state = state_of_new(one.law)
             one.gap = one.contact.gap + gap_row @ q
             one.status = STICKING if one.gap == 0.0 and speed == 0.0 else SEPARATED
+            if one.status == STICKING:
+                one.last_slip = 0.0
             one.given = None
             if has_state(one.law):
                 one.given = ratio_with_state(one.law, one.state, speed, h)
@@ -542,6 +496,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         for one, (status, one.normal, one.tangential) in zip(closed, found, strict=True):
             one.closed = float(status != SEPARATED)
             one.status = one.status or status
+            one.past = one.tangential / one.normal / 2 if one.normal else 0.0
     for one in touches:
         one.given = None
 
@@ -589,6 +544,12 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         for i, (one, (status, normal, tangential)) in enumerate(zip(touches, found, strict=True)):
             w = compliance[2 * i : 2 * i + 2, 2 * i : 2 * i + 2]
             gap = gaps[i] + rows[2 * i] @ (q_new - trial)
+            if status != SEPARATED and not isinstance(one.law, st.Coulomb):
+                free = slips[i] + rows[2 * i + 1] @ (q_new - trial) - w[1] @ [normal, -tangential]
+                one.drive_now = free + w[1, 0] * normal - one.last_slip
+                _, one.past_now, one.state_now, _, one.stays = on_its_way(
+                    LAWS, one, normal, free, strayed[i], w, h, False
+                )
             closed = one.closed
             if one.status != SEPARATED and status == SEPARATED:
                 missing = gap / (w[0, 0] - one.tangential / one.normal * w[0, 1])
@@ -612,15 +573,14 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             work["friction"] += tangential * slip if has_state(one.law) else abs(tangential * slip)
             slope = (normal * trace[2][1] - tangential * trace[2][0]) @ q_new
             work["convection"] += slope * (place - one.place_before) / 2
+            on_way = status != SEPARATED and not isinstance(one.law, st.Coulomb)
             if status == STICKING and one.status != STICKING:
-                one.anchor = one.material
+                one.anchor = material if on_way else one.material
+            one.past, one.drive = (one.past_now, one.drive_now) if on_way else (0.0, 0.0)
             if has_state(one.law):
-                velocity_seen = velocity_of(slip, one, h)
-                one.state = (
-                    state_of_new(one.law) if status == SEPARATED else state_after(one.law, one.state, velocity_seen, h)
-                )
+                one.state = one.state_now if on_way else state_of_new(one.law)
             landings.append(int(one.status == SEPARATED and status != SEPARATED))
-            one.status, one.material, one.last_slip, one.earlier_slip = status, material, slip, one.last_slip
+            one.status, one.material, one.last_slip = status, material, 0.0 if on_way and one.stays else slip
             one.normal, one.tangential = normal, tangential
             one.place_before, one.place = one.place, place
         d = q_new - q

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -30,10 +32,7 @@ def mean_on_path(x: float, now: float, before: float, numbers: tuple[float, ...]
     if rate * bent:
         kinks.append(-(1.0 + rate * sloped / STEP) / (2.0 * rate * bent / STEP))
     points = sorted({-1.0, 0.0, 1.0, *(float(one) for one in kinks if -1.0 < one < 1.0)})
-    return sum(
-        quad(force, *ends, epsabs=1e-12 * k * 1e-6**p, epsrel=1e-7)[0]
-        for ends in zip(points[:-1], points[1:], strict=True)
-    )
+    return sum(quad(force, *ends, epsabs=1e-12 * k * 1e-6**p, epsrel=1e-7)[0] for ends in itertools.pairwise(points))
 
 
 def drawn(rng: np.random.Generator) -> tuple[tuple[float, float, float], tuple[float, float, float, float]]:

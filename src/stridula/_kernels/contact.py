@@ -21,8 +21,8 @@ def solve_contact(gap, slip, strayed, w, law, laws, i, before, let_go, step):
     the step without it [m], `strayed` the distance of a stick from its anchor [m]. The compliance `w` [m/N], rows (nn,
     nt, tn, tt), is the relative displacement of the tip against the track for unit forces (on the tip and its opposite
     on the track), the first index that of the displacement. The tangential force acts on the track along the tangent.
-    `before` are status, slips of the last two steps, the later first, internal state, both forces of the last step and
-    the past part of the ratio, see `slipping`. A contact that was let go is no longer held.
+    `before` are status, slips of the last two steps, the later first, internal state, both forces of the last step, the
+    past part of the ratio and the last drive, see `slipping`. A contact that was let go is no longer held.
     """
     if gap >= 0.0:
         return 0.0, 0.0, SEPARATED, False

@@ -26,7 +26,7 @@ SEPARATED, STICKING, SLIDING = 0, 1, 2
 # Most parts into which the way through a step is divided, and reversals on it.
 MOST_PARTS, REVERSALS = 64, 3
 # Change of the slip in a part, relative to the scale of the law; phase of bristles in a part; ageing in a part.
-PART, PHASE, AGEING = 0.5, 0.35, 1.0
+PART, PHASE, AGEING = 0.5, 0.25, 1.0
 # Steps of Newton's method and trials of a bracketed search for the velocity of a part, and their relative accuracy.
 NEWTON, TRIALS, SETTLED = 8, 200, 1e-13
 
@@ -211,20 +211,28 @@ def parts_with_state(slip, drive, pull, law, laws, i, step):
 
 @numba.njit(**STRICT)
 def ratio_with_state(normal, slip, w, law, laws, i, before, step):
-    """Return the ratio of forces over a step under a law with internal state, its past part, and the new state."""
+    """Return the ratio of forces over a step under a law with internal state, its past part, and the new state.
+
+    The drive goes on through the step as it changed in the last one: a law whose velocity depends on the logarithm of
+    the force would notice its jumps.
+    """
     was, last, state, past = before[0], before[1], before[3], before[6]
     pull, moved = w[3] * normal, slip + w[2] * normal
-    begun, drive = 0.5 * (last + moved), moved - last
+    begun, drive, grows = 0.5 * (last + moved), moved - last, 0.0
     if was == SEPARATED:
         past = 0.5 * state_ratio(law, laws, i, state, begun / step, 1e-9 * step)
-    slip_now = begun - pull * past
+    elif not math.isnan(before[7]):
+        # At the start the last drive is not known.
+        grows = drive - before[7]
+    slip_now = begun - pull * past - grows / 6.0
     count = parts_with_state(slip_now, drive, pull, law, laws, i, step)
     size, later, rest = 1.0 / count, 0.0, 0.0
     for k in range(count):
-        velocity = velocity_of_part(slip_now, size, drive, pull, law, laws, i, state, step)
+        driven = drive + grows * (k + 0.25) * size
+        velocity = velocity_of_part(slip_now, size, driven, pull, law, laws, i, state, step)
         ratio = state_ratio(law, laws, i, state, velocity, size * step)
         middle = (k + 0.5) * size
         later, rest = later + size * (1.0 - middle) * ratio, rest + size * middle * ratio
-        slip_now = 2.0 * velocity * step - slip_now
+        slip_now += size * (drive + grows * middle - pull * ratio)
         state = next_state(law, laws, i, state, velocity, size * step)
     return past + later, rest, state

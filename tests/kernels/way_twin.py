@@ -1,0 +1,163 @@
+"""A slow twin of the slip on its way through a step, under laws whose friction changes within it; see the model.
+
+``u' = drive - pull r`` for the slip u over the step, with the ratio r of the forces. The ratio of a step has the weight
+``1 - s`` for its own way and ``s`` for that of the step before.
+"""
+
+from __future__ import annotations
+
+import itertools
+from types import SimpleNamespace
+
+import numpy as np
+from scipy.optimize import brentq
+
+import stridula as st
+
+SEPARATED, STICKING, SLIDING = 0, 1, 2
+
+
+def on_its_way(laws, before, normal, slip, strayed, own, h, let_go):
+    """Return ratio, past part for the next step, state, status and whether the contact stays where it is.
+
+    `laws` has the functions `curve`, `held_up_to`, `state_after` and `ratio_with_state`; `own` is the compliance for
+    ``(N, -T)``; `slip` the slip without forces of this contact.
+    """
+    pull, moved, last = own[1, 1] * normal, slip + own[1, 0] * normal, before.last_slip
+    law, begun, drive = before.law, 0.5 * (last + moved), moved - last
+    if not laws.set_valued(law):
+        return _with_state(laws, before, begun, drive, pull, moved, h)
+    held = laws.held_up_to(law, before.status == STICKING and not let_go)
+    needed = (moved + strayed) / pull
+    way = SimpleNamespace(laws=laws, law=law, pull=pull, h=h)
+    if before.status == STICKING and last == 0.0:
+        grows = needed - (before.tangential / before.normal if before.normal else needed)
+        if max(abs(needed), abs(needed + grows)) <= held and not let_go:
+            return needed, needed / 2 + grows / 3, before.state, STICKING, True
+        sense = np.sign(needed if abs(needed) > held else needed + grows) or -1.0
+        breaks = 0.0 if abs(needed) >= held else np.clip((sense * held - needed) / grows, 0.0, 1.0)
+        later, past = _moments(0.0, breaks, *(needed + grows * breaks * np.array([0.0, 0.5, 1.0])))
+        more, rest, sticks = _slide(way, 0.0, breaks, (pull * needed, pull * grows), sense)
+        ratio = needed / 2 - grows / 6 + later + more
+        return ratio, past + rest, before.state, STICKING if sticks else SLIDING, False
+    if before.status == STICKING:
+        short = 2 * (needed - before.past)
+        if abs(short) <= held and not let_go:
+            return needed, needed / 2, before.state, STICKING, True
+        more, rest, sticks = _slide(way, 0.0, 0.0, (pull * short, 0.0), np.sign(short))
+        return before.past + more, rest, before.state, STICKING if sticks else SLIDING, False
+    past = before.past
+    if before.status == SEPARATED:
+        if abs(needed) <= held and not let_go:
+            return needed, needed / 2, before.state, STICKING, True
+        sense = 1.0 if begun > 0 else -1.0
+        past = 0.5 * sense * laws.curve(law, abs(begun) / h)
+    u = begun - pull * past
+    sense = 1.0 if u > 0 or (u == 0 and drive > 0) else -1.0
+    more, rest, sticks = _slide(way, u, 0.0, (drive, 0.0), sense)
+    return past + more, rest, before.state, STICKING if sticks else SLIDING, False
+
+
+def _moments(a, b, first, middle, last):
+    """Return the integrals of a ratio from a to b with the weights ``1 - s`` and ``s``, by Simpson's rule."""
+    s, values = np.array([a, 0.5 * (a + b), b]), np.array([first, 4 * middle, last])
+    return (b - a) / 6 * np.sum((1 - s) * values), (b - a) / 6 * np.sum(s * values)
+
+
+def _parts(way, reach):
+    law = way.law
+    if isinstance(law, st.StaticKinetic):
+        return 1
+    scale = law.velocity if not isinstance(law, st.LinearWeakening) else law.static / law.slope
+    viscous = law.viscous if isinstance(law, st.Stribeck) else 0.0
+    return int(min(max(1 + 2 * reach / (scale * way.h), 1 + way.pull * viscous / way.h), 64))
+
+
+def _slide(way, u, begin, drive, sense):
+    """Slide from `begin` on by the method of Runge and Kutta; return both parts of the ratio and whether it sticks."""
+    later, past, pull = 0.0, 0.0, way.pull
+    held = way.laws.held_up_to(way.law, True)
+    for _ in range(3):
+
+        def ratio(u, sense=sense):
+            return sense * way.laws.curve(way.law, max(sense * u, 0.0) / way.h)
+
+        reach = (abs(drive[0]) + abs(drive[1]) + pull * way.laws.held_up_to(way.law, True)) * (1 - begin)
+        edges = np.linspace(begin, 1.0, _parts(way, reach) + 1)
+        stops = False
+        for a, b in itertools.pairwise(edges):
+            size, middle = b - a, drive[0] + drive[1] * 0.5 * (a + b)
+            k1 = ratio(u)
+            rate = drive[0] + drive[1] * a - pull * k1
+            k2 = ratio(u + size / 2 * rate)
+            k3 = ratio(u + size / 2 * (middle - pull * k2))
+            k4 = ratio(u + size * (middle - pull * k3))
+            new = u + size * (middle - pull * (k1 + 2 * k2 + 2 * k3 + k4) / 6)
+            if sense * new < 0:
+                bent = (new - u - rate * size) / size**2
+                after = 0.0
+                if u:
+                    roots = np.roots([bent, rate, u])
+                    inside = [one.real for one in roots if abs(one.imag) < 1e-9 * size and one.real / size > -1e-9]
+                    after = float(np.clip(min(inside), 0.0, size))
+                half = u + rate * after / 2 + bent * (after / 2) ** 2
+                more, less = _moments(a, a + after, k1, ratio(half), ratio(0.0))
+                later, past, begin, stops = later + more, past + less, a + after, True
+                break
+            more, less = _moments(a, b, k1, 0.5 * (k2 + k3), k4)
+            later, past, u = later + more, past + less, new
+        if not stops:
+            return later, past, False
+        ends = drive[0] + drive[1] * np.array([begin, 0.5 * (begin + 1), 1.0])
+        if max(abs(ends[0]), abs(ends[2])) <= held * pull:
+            more, less = _moments(begin, 1.0, *ends / pull)
+            return later + more, past + less, True
+        u, sense = 0.0, 1.0 if ends[0] > 0 else -1.0
+    return later, past, False
+
+
+def _with_state(laws, before, begun, drive, pull, moved, h):
+    """The way under a law with internal state, by the midpoint rule in parts."""
+    law, state, past, grows = before.law, before.state, before.past, 0.0
+    if before.status == SEPARATED:
+        past = 0.5 * laws.ratio_with_state(law, state, begun / h, 1e-9 * h)
+    elif not np.isnan(before.drive):
+        grows = drive - before.drive
+    u = begun - pull * past - grows / 6
+    if isinstance(law, st.LuGre):
+        change = (abs(drive) + pull * law.static) / (4 * law.velocity * h)
+        count = 1 + max(np.sqrt(pull * law.stiffness) / 0.25, change)
+    else:
+        count = 2 + (abs(u) + abs(drive)) / law.slip_distance
+    count = int(min(count, 64))
+    size, later, rest = 1 / count, 0.0, 0.0
+    for k in range(count):
+        driven = drive + grows * (k + 0.25) * size
+
+        def error(v, u=u, driven=driven, state=state):
+            ratio = laws.ratio_with_state(law, state, v, size * h)
+            return v * h - u - size / 2 * (driven - pull * ratio)
+
+        v = _root(error, law, abs(u) / h + abs(driven) / h)
+        ratio, middle = laws.ratio_with_state(law, state, v, size * h), (k + 0.5) * size
+        later, rest = later + size * (1 - middle) * ratio, rest + size * middle * ratio
+        u += size * (drive + grows * middle - pull * ratio)
+        state = laws.state_after(law, state, v, size * h)
+    ratio = past + later
+    slow = abs(moved - pull * ratio) < h * law.velocity
+    return ratio, rest, state, STICKING if slow else SLIDING, False
+
+
+def _root(error, law, reach):
+    """The velocity at which an increasing function is zero, searched on the scale of creep."""
+    scale = law.velocity * 1e-12
+    at_rest = error(0.0)
+    if at_rest == 0.0:
+        return 0.0
+    sense, high = -np.sign(at_rest), max(reach, scale)
+    while sense * error(sense * high) < 0:
+        high *= 2
+    y = brentq(
+        lambda y: error(sense * scale * np.sinh(y)), 0.0, np.arcsinh(high / scale), xtol=1e-300, rtol=4 * 2.0**-52
+    )
+    return sense * scale * np.sinh(y)
