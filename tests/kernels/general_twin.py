@@ -384,7 +384,7 @@ class Touch:
         self.law = contact.friction
         self.status, self.state, self.anchor = SEPARATED, state_of_new(self.law), 0.0
         self.material = self.place = self.place_before = self.last_slip = self.past = 0.0
-        self.drive, self.stays = np.nan, False
+        self.drive, self.rests = np.nan, False
         self.normal = self.tangential = self.closed = self.gap = 0.0
         self.given = None
 
@@ -521,6 +521,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         strayed = [one.material - one.anchor if one.status == STICKING else 0.0 for one in touches]
         # All combinations are tried at one step in ten, to count the consistent ones.
         compliance = rows @ load @ rows.T
+        let_go = ()
         found = solve_contacts(gaps, slips, strayed, compliance, touches, h, guess if n % 10 else None)
         if not found:
             # The response of another foot may bring a sliding foot below its static limit: it still slides.
@@ -547,8 +548,8 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             if status != SEPARATED and not isinstance(one.law, st.Coulomb):
                 free = slips[i] + rows[2 * i + 1] @ (q_new - trial) - w[1] @ [normal, -tangential]
                 one.drive_now = free + w[1, 0] * normal - one.last_slip
-                _, one.past_now, one.state_now, _, one.stays = on_its_way(
-                    LAWS, one, normal, free, strayed[i], w, h, False
+                _, one.past_now, one.state_now, _, one.rests = on_its_way(
+                    LAWS, one, normal, free, strayed[i], w, h, i in let_go
                 )
             closed = one.closed
             if one.status != SEPARATED and status == SEPARATED:
@@ -574,13 +575,15 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             slope = (normal * trace[2][1] - tangential * trace[2][0]) @ q_new
             work["convection"] += slope * (place - one.place_before) / 2
             on_way = status != SEPARATED and not isinstance(one.law, st.Coulomb)
-            if status == STICKING and one.status != STICKING:
-                one.anchor = material if on_way else one.material
+            if status == STICKING and on_way and not has_state(one.law):
+                one.anchor = one.anchor if one.rests and one.status == STICKING else material
+            elif status == STICKING and one.status != STICKING:
+                one.anchor = one.material
             one.past, one.drive = (one.past_now, one.drive_now) if on_way else (0.0, 0.0)
             if has_state(one.law):
                 one.state = one.state_now if on_way else state_of_new(one.law)
             landings.append(int(one.status == SEPARATED and status != SEPARATED))
-            one.status, one.material, one.last_slip = status, material, 0.0 if on_way and one.stays else slip
+            one.status, one.material, one.last_slip = status, material, 0.0 if on_way and one.rests else slip
             one.normal, one.tangential = normal, tangential
             one.place_before, one.place = one.place, place
         d = q_new - q

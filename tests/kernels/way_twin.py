@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-import itertools
 from types import SimpleNamespace
 
 import numpy as np
@@ -64,13 +63,16 @@ def _moments(a, b, first, middle, last):
     return (b - a) / 6 * np.sum((1 - s) * values), (b - a) / 6 * np.sum(s * values)
 
 
-def _parts(way, reach):
+def _part(way, u, rate, ratio):
     law = way.law
     if isinstance(law, st.StaticKinetic):
-        return 1
-    scale = law.velocity if not isinstance(law, st.LinearWeakening) else law.static / law.slope
-    viscous = law.viscous if isinstance(law, st.Stribeck) else 0.0
-    return int(min(max(1 + 2 * reach / (scale * way.h), 1 + way.pull * viscous / way.h), 64))
+        return 1.0
+    if isinstance(law, st.LinearWeakening):
+        scale, steep = law.static / law.slope * way.h, law.slope / way.h * (ratio > law.kinetic)
+    else:
+        scale, viscous = law.velocity * way.h, law.viscous / way.h if isinstance(law, st.Stribeck) else 0.0
+        steep = (ratio - law.kinetic - viscous * abs(u)) / scale + viscous
+    return max(0.5 / (abs(rate) / (scale + abs(u)) + way.pull * steep + 0.5), 1 / 64)
 
 
 def _slide(way, u, begin, drive, sense):
@@ -82,13 +84,14 @@ def _slide(way, u, begin, drive, sense):
         def ratio(u, sense=sense):
             return sense * way.laws.curve(way.law, max(sense * u, 0.0) / way.h)
 
-        reach = (abs(drive[0]) + abs(drive[1]) + pull * way.laws.held_up_to(way.law, True)) * (1 - begin)
-        edges = np.linspace(begin, 1.0, _parts(way, reach) + 1)
-        stops = False
-        for a, b in itertools.pairwise(edges):
-            size, middle = b - a, drive[0] + drive[1] * 0.5 * (a + b)
+        stops, a = False, begin
+        while a < 1:
             k1 = ratio(u)
             rate = drive[0] + drive[1] * a - pull * k1
+            size = _part(way, u, rate, abs(k1))
+            b = 1.0 if a + size >= 1 else a + size
+            size = b - a
+            middle = drive[0] + drive[1] * 0.5 * (a + b)
             k2 = ratio(u + size / 2 * rate)
             k3 = ratio(u + size / 2 * (middle - pull * k2))
             k4 = ratio(u + size * (middle - pull * k3))
@@ -105,7 +108,7 @@ def _slide(way, u, begin, drive, sense):
                 later, past, begin, stops = later + more, past + less, a + after, True
                 break
             more, less = _moments(a, b, k1, 0.5 * (k2 + k3), k4)
-            later, past, u = later + more, past + less, new
+            later, past, u, a = later + more, past + less, new, b
         if not stops:
             return later, past, False
         ends = drive[0] + drive[1] * np.array([begin, 0.5 * (begin + 1), 1.0])

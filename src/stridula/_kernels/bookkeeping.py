@@ -8,7 +8,7 @@ from .friction import set_valued
 from .lanes import anywhere, choose, held, hold, magnitude, read
 from .modes import OPTIONS
 from .pressing import stored_in
-from .solves import carried_by, next_on_way, strayed
+from .solves import anchor_after, carried_by, next_on_way, resting, strayed
 from .yielding import path_of, yields_of
 
 
@@ -43,16 +43,16 @@ def share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, 
         return zero
     landed = choose(touched, zero, choose(apart, zero, 1.0))
     closed = choose(touched, 1.0, landed_share(held(carried, base + at.LAST_GAP, run, zero), free_gap))
-    sticks = magnitude(status - STICKING) < 0.5
+    sticks = magnitude(resting(status) - STICKING) < 0.5
     add(sums, tally + at.TOUCHDOWNS, run, landed, zero)
     add(sums, tally + at.JAMS, run, jammed, zero)
     add(sums, tally + at.STUCK_STEPS, run, choose(sticks, 1.0, zero), zero)
-    add(sums, tally + at.SLID_STEPS, run, choose(status > SLIDING - 0.5, 1.0, zero), zero)
+    add(sums, tally + at.SLID_STEPS, run, choose(sticks, zero, choose(apart, zero, 1.0)), zero)
     anchor = held(carried, base + at.ANCHOR, run, zero)
     # On its way through the step a contact may stop after a slip.
     stopped = zero if law == at.COULOMB else moved[3]
-    begun = choose(stuck, anchor, held(carried, base + at.MATERIAL, run, zero) + stopped)
-    hold(carried, base + at.ANCHOR, run, choose(sticks, begun, anchor))
+    place = held(carried, base + at.MATERIAL, run, zero) + stopped
+    hold(carried, base + at.ANCHOR, run, anchor_after(anchor, place, status, was))
     return choose(apart, zero, closed)
 
 
@@ -74,7 +74,7 @@ def driven_work(i, touch, motion, n, run, runs, zero):
 
 @numba.njit(**OPTIONS)
 def next_of(i, touch, moved, w, away, before, contacts, step, run, runs, zero):
-    """Return the past part of the ratio of contact `i` for the next step, the state of its law, whether it stays put."""
+    """Return the past part of the ratio of contact `i` for the next step, the state of its law, whether it rests."""
     law, laws, number = contacts.codes[i], contacts.laws, i * runs + run
     if law == at.COULOMB:
         return zero, before[3], zero
@@ -89,7 +89,7 @@ def keep_forces(i, touch, moved, carried, contacts, closed, run, zero):
     normal, tangential, status, _ = touch
     slip = moved[3]
     add(contacts.sums, i * at.SUMS + at.NORMALS, run, normal, zero)
-    hold(carried, base + at.STATUS, run, status)
+    hold(carried, base + at.STATUS, run, resting(status))
     hold(carried, base + at.CLOSED_SHARE, run, closed)
     hold(carried, base + at.LAST_NORMAL, run, normal)
     # In a step in which the slip turns round, its mean force and the slip have opposite signs.
@@ -104,11 +104,11 @@ def keep_tangential(i, tangential, carried, sums, run, zero):
 
 
 @numba.njit(**OPTIONS)
-def keep_motion(i, moved, stays, before, carried, run, zero):
-    """Carry gap and slip of contact `i` to the next step; one that stays put has a slip of rounding, carried as none."""
+def keep_motion(i, moved, rests, before, carried, run, zero):
+    """Carry gap and slip of contact `i` to the next step; the slip of one that rests is rounding, carried as none."""
     base = i * at.CARRIED
     hold(carried, base + at.EARLIER_SLIP, run, before[1])
-    hold(carried, base + at.LAST_SLIP, run, choose(stays > 0.5, zero, moved[3]))
+    hold(carried, base + at.LAST_SLIP, run, choose(rests > 0.5, zero, moved[3]))
     hold(carried, base + at.EARLIER_GAP, run, held(carried, base + at.LAST_GAP, run, zero))
     hold(carried, base + at.LAST_GAP, run, moved[2])
     add(carried, base + at.MATERIAL, run, moved[3], zero)
@@ -160,7 +160,7 @@ def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, run
         held(contacts.now, i * at.IN_STEP + at.GIVE, run, zero),
         held(contacts.now, i * at.IN_STEP + at.BEYOND, run, zero),
     )
-    stays = zero
+    rests = zero
     w, moved = (w[0] + give, w[1], w[2], w[3]), (moved[0] + beyond, moved[1], moved[2], moved[3])
     if not set_valued(law) or anywhere(touch[2] + before[0] > 0.5):
         away = strayed(carried, i, run, zero)
@@ -170,14 +170,14 @@ def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, run
             driven = driven_work(i, touch, imposed.motion, n, run, runs, zero)
             add(state.energies, at.CONTACT_WORK, run, -driven, zero)
             add(state.energies, at.DRIVE_WORK, run, driven, zero)
-        past, friction_state, stays = next_of(i, touch, moved, w, away, before, contacts, timing.step, run, runs, zero)
+        past, friction_state, rests = next_of(i, touch, moved, w, away, before, contacts, timing.step, run, runs, zero)
         hold(carried, i * at.CARRIED + at.PAST_RATIO, run, past)
         hold(carried, i * at.CARRIED + at.PAST_DRIVE, run, moved[1] + w[2] * touch[0] - before[1])
         hold(carried, i * at.CARRIED + at.FRICTION_STATE, run, friction_state)
         lost = keep_forces(i, touch, moved, carried, contacts, closed, run, zero)
         keep_tangential(i, touch[1], carried, sums, run, zero)
         add(state.energies, at.FRICTION_LOSS, run, lost, zero)
-    keep_motion(i, moved, stays, before, carried, run, zero)
+    keep_motion(i, moved, rests, before, carried, run, zero)
 
 
 @numba.njit(**OPTIONS)

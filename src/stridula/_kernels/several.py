@@ -24,7 +24,7 @@ from .friction import set_valued
 from .lanes import anywhere, choose, component, held, hold
 from .leaving import any_beyond_ends
 from .modes import OPTIONS, PASTED
-from .solves import strayed
+from .solves import resting, strayed
 from .space import (
     along,
     carried_in_space,
@@ -117,7 +117,7 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
     )
     law = contacts.codes[i]
     store_in(i, held(now, here + at.NEW_GAP, run, zero), contacts, state, run, zero)
-    stays = zero
+    rests = zero
     if not set_valued(law) or anywhere(status + was > 0.5):
         give, beyond = held(now, here + at.GIVE, run, zero), held(now, here + at.BEYOND, run, zero)
         moved = (
@@ -142,7 +142,7 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
         if law == at.LUGRE:
             keep_bristles(i, slips, (was, last, earlier, states), status, carried, contacts, timing.step, run, runs)
         else:
-            past, friction_state, stays = next_of(
+            past, friction_state, rests = next_of(
                 i, touch, moved, w, away, before, contacts, timing.step, run, runs, zero
             )
             drive = moved[1] + w[2] * normal - before[1]
@@ -155,11 +155,11 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
         add(state.energies, at.FRICTION_LOSS, run, lost, zero)
         for k in range(2):
             keep_tangential(i + k, forces[k], carried, contacts.sums, run, zero)
-        hold(carried, base + at.CARRIED + at.STATUS, run, status)
+        hold(carried, base + at.CARRIED + at.STATUS, run, resting(status))
         hold(carried, base + at.CARRIED + at.LAST_NORMAL, run, normal)
     gap = held(now, here + at.NEW_GAP, run, zero)
     for k in range(2):
-        keep_motion(i + k, (gap, gap, gap, slips[k]), stays, (was, last[k]), carried, run, zero)
+        keep_motion(i + k, (gap, gap, gap, slips[k]), rests, (was, last[k]), carried, run, zero)
 
 
 @numba.njit(**PASTED)

@@ -22,10 +22,11 @@ from .friction import (
     state_ratio_and_slope,
 )
 
-SEPARATED, STICKING, SLIDING = 0, 1, 2
+# A contact that stopped slid in this step and is at rest at its end: the next step finds it sticking.
+SEPARATED, STICKING, SLIDING, STOPPED = 0, 1, 2, 3
 # Most parts into which the way through a step is divided, and reversals on it.
 MOST_PARTS, REVERSALS = 64, 3
-# Change of the slip in a part, relative to the scale of the law; phase of bristles in a part; ageing in a part.
+# Bend of the law in a part; phase of bristles in a part; ageing in a part.
 PART, PHASE, AGEING = 0.5, 0.25, 1.0
 # Steps of Newton's method and trials of a bracketed search for the velocity of a part, and their relative accuracy.
 NEWTON, TRIALS, SETTLED = 8, 200, 1e-13
@@ -45,16 +46,22 @@ def ratio_of(slip, sense, law, laws, i, step):
     return sense * sliding_ratio(law, laws, i, max(sense * slip, 0.0) / step)
 
 
-@numba.njit(**STRICT)
-def parts_of(reach, pull, law, laws, i, step):
-    """Return the number of parts of the way, for the largest change of the slip."""
+@numba.njit(inline="always", **STRICT)
+def part_of(slip, rate, ratio, pull, law, laws, i, step):
+    """Return the size of the next part of the way, within which the ratio of a set-valued law hardly bends.
+
+    It depends continuously on its arguments, so that the solution does on those of the step.
+    """
     if law == at.STATIC_KINETIC:
-        return 1
-    count = 1.0 + reach / (PART * speed_scale(law, laws, i, 0.0) * step)
-    if law == at.STRIBECK:
-        # Viscous friction brakes a slip at this rate.
-        count = max(count, 1.0 + pull * laws[i, 4] / step)
-    return int(min(count, float(MOST_PARTS)))
+        return 1.0
+    scale, size = speed_scale(law, laws, i, 0.0) * step, abs(slip)
+    if law == at.LINEAR_WEAKENING:
+        steep = laws[i, 1] / step if ratio > laws[i, 2] else 0.0
+    else:
+        viscous = laws[i, 4] / step
+        steep = (ratio - laws[i, 1] - viscous * size) / scale + viscous
+    part = PART / (abs(rate) / (scale + size) + pull * steep + PART)
+    return max(part, 1.0 / MOST_PARTS)
 
 
 @numba.njit(**STRICT)
@@ -72,15 +79,14 @@ def slide_through(slip, begin, drive, pull, sense, law, laws, i, step):
     """
     later, past, held = 0.0, 0.0, holding_ratio(law, laws, i, True)
     for _ in range(REVERSALS):
-        reach = abs(drive[0]) + abs(drive[1]) + pull * laws[i, 0]
-        count = parts_of(reach * (1.0 - begin), pull, law, laws, i, step)
-        part, stops = (1.0 - begin) / count, False
-        for k in range(count):
-            end = 1.0 if k == count - 1 else begin + part
-            size = end - begin
-            middle = drive[0] + drive[1] * (begin + 0.5 * size)
+        stops = False
+        while begin < 1.0:
             r1 = ratio_of(slip, sense, law, laws, i, step)
             rate = drive[0] + drive[1] * begin - pull * r1
+            size = part_of(slip, rate, abs(r1), pull, law, laws, i, step)
+            end = min(begin + size, 1.0)
+            size = end - begin
+            middle = drive[0] + drive[1] * (begin + 0.5 * size)
             r2 = ratio_of(slip + 0.5 * size * rate, sense, law, laws, i, step)
             r3 = ratio_of(slip + 0.5 * size * (middle - pull * r2), sense, law, laws, i, step)
             r4 = ratio_of(slip + size * (middle - pull * r3), sense, law, laws, i, step)
@@ -110,10 +116,10 @@ def slide_through(slip, begin, drive, pull, sense, law, laws, i, step):
 
 @numba.njit(**STRICT)
 def ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step):
-    """Return the ratio of forces over a step under a set-valued law, its past part, status and whether held.
+    """Return the ratio of forces over a step under a set-valued law, its past part and status.
 
     `normal` is the normal force, `slip` the slip without the forces of this contact; other arguments as in
-    `contact.solve_contact`. A contact is held if it sticks throughout the step.
+    `contact.solve_contact`. A contact that sticks does so throughout the step.
     """
     was, last, past = before[0], before[1], before[6]
     pull, moved = w[3] * normal, slip + w[2] * normal
@@ -124,7 +130,7 @@ def ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step
         earlier = before[5] / before[4] if before[4] > 0.0 else needed
         grows = needed - earlier
         if not let_go and abs(needed) <= held and abs(needed + grows) <= held:
-            return needed, 0.5 * needed + grows / 3.0, STICKING, True
+            return needed, 0.5 * needed + grows / 3.0, STICKING
         sense = 1.0 if needed + grows > 0.0 else -1.0
         if abs(needed) > held:
             sense = 1.0 if needed > 0.0 else -1.0
@@ -134,26 +140,26 @@ def ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step
         first, less = moments(0.0, broke, needed, needed + 0.5 * broke * grows, needed + broke * grows)
         more, rest, sticks = slide_through(0.0, broke, (pull * needed, pull * grows), pull, sense, law, laws, i, step)
         ratio = 0.5 * needed - grows / 6.0 + first + more
-        return ratio, less + rest, STICKING if sticks else SLIDING, False
+        return ratio, less + rest, STOPPED if sticks else SLIDING
     if was == STICKING:
         # It came to rest within the last step.
         short = 2.0 * (needed - past)
         if not let_go and abs(short) <= held:
-            return needed, 0.5 * needed, STICKING, True
+            return needed, 0.5 * needed, STICKING
         sense = 1.0 if short > 0.0 else -1.0
         more, rest, sticks = slide_through(0.0, 0.0, (pull * short, 0.0), pull, sense, law, laws, i, step)
-        return past + more, rest, STICKING if sticks else SLIDING, False
+        return past + more, rest, STOPPED if sticks else SLIDING
     begun = 0.5 * (last + moved)
     if was != SLIDING:
         # It lands: half of its force acts before the step.
         if not let_go and abs(needed) <= held:
-            return needed, 0.5 * needed, STICKING, True
+            return needed, 0.5 * needed, STICKING
         sense = 1.0 if begun > 0.0 else -1.0
         past = 0.5 * ratio_of(begun, sense, law, laws, i, step)
     slip_at_step, drive = begun - pull * past, moved - last
     sense = 1.0 if slip_at_step > 0.0 or (slip_at_step == 0.0 and drive > 0.0) else -1.0
     more, rest, sticks = slide_through(slip_at_step, 0.0, (drive, 0.0), pull, sense, law, laws, i, step)
-    return past + more, rest, STICKING if sticks else SLIDING, False
+    return past + more, rest, STOPPED if sticks else SLIDING
 
 
 @numba.njit(**STRICT)

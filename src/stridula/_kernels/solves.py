@@ -8,6 +8,7 @@ from .contact import SLIDING, STICKING, ratio_under, solve_contact, turn_round
 from .friction import STRICT, set_valued
 from .lanes import anywhere, choose, everywhere, held, lane, magnitude, spread, with_lane
 from .modes import OPTIONS, PASTED
+from .slipping import STOPPED
 from .vectors import LANES, VECTOR
 
 
@@ -75,8 +76,8 @@ def next_on_way_of_run(touch, slip, strayed, w, law, laws, run, before, let_go, 
         return 0.0, laws[run, at.LAW_PARAMETERS - 1], 0.0
     if law == at.COULOMB or (set_valued(law) and w[3] == 0.0):
         return 0.0, before[3], 0.0
-    _, past, state, _, stays = ratio_under(touch[0], slip, strayed, w, law, laws, run, before, let_go > 0.5, step)
-    return past, state, 1.0 if stays else 0.0
+    _, past, state, status = ratio_under(touch[0], slip, strayed, w, law, laws, run, before, let_go > 0.5, step)
+    return past, state, 1.0 if set_valued(law) and status == STICKING else 0.0
 
 
 @numba.njit(**STRICT)
@@ -120,9 +121,9 @@ def solve_runs(gap, slip, strayed, w, law, laws, run, before, let_go, step):
 @numba.njit(**STRICT)
 def next_on_way_of_runs(touch, slip, strayed, w, law, laws, run, before, let_go, step):
     """Do `next_on_way` for vectors of runs."""
-    past, state, stays = spread(0.0), before[3], spread(0.0)
+    past, state, rests = spread(0.0), before[3], spread(0.0)
     if law == at.COULOMB:
-        return past, state, stays
+        return past, state, rests
     for i in range(LANES):
         one = next_on_way_of_run(
             (lane(touch[0], i), lane(touch[1], i)),
@@ -137,8 +138,8 @@ def next_on_way_of_runs(touch, slip, strayed, w, law, laws, run, before, let_go,
             step,
         )
         past, state = with_lane(past, i, one[0]), with_lane(state, i, one[1])
-        stays = with_lane(stays, i, one[2])
-    return past, state, stays
+        rests = with_lane(rests, i, one[2])
+    return past, state, rests
 
 
 @overload(solve)
@@ -184,6 +185,20 @@ def strayed(carried, i, run, zero):
     stuck = magnitude(held(carried, base + at.STATUS, run, zero) - STICKING) < 0.5
     away = held(carried, base + at.MATERIAL, run, zero) - held(carried, base + at.ANCHOR, run, zero)
     return choose(stuck, away, zero)
+
+
+@numba.njit(**OPTIONS)
+def resting(status):
+    """Return the status of a step for the next one: a contact that stopped sticks."""
+    return choose(status > STOPPED - 0.5, STICKING + 0.0 * status, status)
+
+
+@numba.njit(**OPTIONS)
+def anchor_after(anchor, place, status, was):
+    """Return the anchor of a stick after a step: a contact that came to rest in it is anchored at its `place`."""
+    sticks, stuck = magnitude(status - STICKING) < 0.5, magnitude(was - STICKING) < 0.5
+    began = choose(status > STOPPED - 0.5, 1.0, choose(stuck, 0.0 * status, choose(sticks, 1.0, 0.0 * status)))
+    return choose(began > 0.5, place, anchor)
 
 
 @numba.njit(**PASTED)

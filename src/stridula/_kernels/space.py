@@ -15,9 +15,9 @@ from .block_rows import COMPLIANCE, DISPLACEMENT
 from .bristles import next_bristles, slide_on_bristles
 from .contact import SLIDING, STICKING, velocity_at
 from .friction import STRICT, set_valued, sliding_ratio
-from .lanes import choose, component, held, hold, lane, magnitude, spread, with_lane
+from .lanes import choose, component, held, hold, lane, spread, with_lane
 from .modes import OPTIONS, PASTED
-from .solves import carried_by, solve_one_run, strayed
+from .solves import anchor_after, carried_by, solve_one_run, strayed
 from .vectors import LANES, VECTOR
 
 # Largest number of trials of a direction of friction; velocity across it that counts as round-off, relative to its
@@ -255,7 +255,7 @@ def searched(first, second, may_hold, free, law, laws, number, before, let_go, s
         normal, tangential, status, jammed = solve_along(c, s, free, law, laws, number, before, freed, step)
         if may_hold and abs(before[0] - STICKING) < 0.5:
             freed = 1.0
-        if trial == 0 and may_hold and abs(status - STICKING) < 0.5:
+        if trial == 0 and may_hold and abs(status - SLIDING) > 0.5:
             break
         # The direction is that of the velocity in laws that depend on speed, see `contact.velocity_at`.
         slip, swerve = slip_under(c, s, normal, tangential, slips, w)
@@ -459,10 +459,8 @@ def free_in_space(contacts, sizes, run, zero):
 def keep_second_anchor(i, stopped, status, was, carried, run, zero):
     """Carry the anchor of a stick of contact `i` along its second tangent."""
     base = (i + 1) * at.CARRIED
-    stuck, sticks = magnitude(was - STICKING) < 0.5, magnitude(status - STICKING) < 0.5
-    anchor = held(carried, base + at.ANCHOR, run, zero)
-    begun = choose(stuck, anchor, held(carried, base + at.MATERIAL, run, zero) + stopped)
-    hold(carried, base + at.ANCHOR, run, choose(sticks, begun, anchor))
+    anchor, material = held(carried, base + at.ANCHOR, run, zero), held(carried, base + at.MATERIAL, run, zero)
+    hold(carried, base + at.ANCHOR, run, anchor_after(anchor, material + stopped, status, was))
 
 
 @numba.njit(**OPTIONS)
