@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from . import (
+    clockwork,
     falling,
     frequencies,
     impacts,
@@ -10,6 +11,7 @@ from . import (
     instabilities,
     jams,
     laws,
+    linings,
     open_air,
     orders,
     partial_slip,
@@ -33,9 +35,11 @@ CASES: tuple[Case, ...] = (
     *stability.CASES,
     *impacts.CASES,
     *indentation.CASES,
+    *linings.CASES,
     *partial_slip.CASES,
     *jams.CASES,
     *laws.CASES,
+    *clockwork.CASES,
     *frequencies.CASES,
     *plates.CASES,
     *strings.CASES,
