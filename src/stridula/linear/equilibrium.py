@@ -13,6 +13,7 @@ from ..arrays import Array
 from ..checks import ArgumentError
 from ..contact import FrictionLaw
 from ..contact.stiffness import indentation_under, tangent_of
+from .held_twice import held_twice
 from .structure import SEPARATED, SLIDING, STICKING, UNMOVED, Structure
 
 # Relative size below which a force or an acceleration is round-off.
@@ -365,13 +366,7 @@ def _check_held(structure: Structure, held: Array, contacts: Sequence[int]) -> N
             name = structure.system.contact_names[contact]
             raise ArgumentError("contact", "be between points that move", got=f"{name}, whose points are both held")
     if len(held) and _rank_is_short(held):
-        names = ", ".join(dict.fromkeys(structure.system.contact_names[contact] for contact in contacts))
-        raise ArgumentError(
-            "contacts",
-            "not hold the same motion twice, which leaves forces undetermined",
-            contacts,
-            got=f"{names}; use elastic bodies or another status",
-        )
+        raise held_twice(structure.system, contacts)
 
 
 def _check_unbraked(structure: Structure, free: Array) -> None:
