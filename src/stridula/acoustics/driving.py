@@ -209,7 +209,11 @@ def _of_drives(flat: Assembly, start: float, interval: float, steps: int, sample
     times = start + step * np.arange(samples * steps)
     found = np.zeros((len(flat.loads), samples))
     for load, signal in zip(found, flat.signals, strict=False):
-        load[:] = signal(times, step).reshape(samples, steps).mean(axis=1)
+        values = signal(times, step)
+        if start < 0.5 * interval:
+            # A run begins in the middle of the impulse of its first step.
+            values[0] *= 0.5
+        load[:] = values.reshape(samples, steps).mean(axis=1)
     return found
 
 
