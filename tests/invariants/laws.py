@@ -78,6 +78,9 @@ def of_one(law, columns, state, step, small):
         yield "slip while sticking"
     if np.any((tangential * slip)[sliding] < -np.abs(tangential[sliding]) * small):
         yield "slides the wrong way"
+    one_way = closed & ~turned
+    if np.any((tangential * slip)[one_way] < -np.abs(tangential[one_way]) * small):
+        yield "friction gives energy"
     if np.any(off[sliding] > 1e-9 * cone[sliding] + TOLERANCE * peak):
         yield "slides outside the cone"
     if np.any(off[sliding] < -1e-9 * cone[sliding] - TOLERANCE * peak):
@@ -133,5 +136,5 @@ def ratios_with_state(law, states, speeds, step):
     lowest, highest = states.min() - spread, states.max() + spread
     if isinstance(law, st.RateAndState):
         lowest, highest = states.min() / 3.0, 3.0 * states.max()
-    found = [ratio_with_state(law, state, v, 1e-9 * step) for state in (lowest, highest) for v in speeds]
+    found = [ratio_with_state(law, state, v, 1e-9 * step) for state in np.linspace(lowest, highest, 5) for v in speeds]
     return min(found), max(found)

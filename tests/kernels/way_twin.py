@@ -33,7 +33,17 @@ def on_its_way(laws, before, normal, slip, strayed, own, h, let_go):
         grows = needed - (before.tangential / before.normal if before.normal else needed)
         if max(abs(needed), abs(needed + grows)) <= held and not let_go:
             return needed, needed / 2 + grows / 3, before.state, STICKING, True
-        sense = np.sign(needed if abs(needed) > held else needed + grows) or -1.0
+        if abs(needed) > held:
+            # It broke before this step: from the last one on it slides with the ratio of incipient sliding.
+            sense, earlier = np.sign(needed), needed - grows
+            breaks = np.clip((sense * held - earlier) / grows, 0.0, 1.0) if grows else 0.0
+            slides = sense * laws.curve(law, 0.0)
+            before_now = _moments(0.0, breaks, *(earlier + grows * breaks * np.array([0.0, 0.5, 1.0])))[1]
+            before_now += _moments(breaks, 1.0, slides, slides, slides)[1]
+            u = pull * ((needed / 2 - grows / 6) - before_now)
+            more, rest, sticks = _slide(way, u, 0.0, (pull * needed, pull * grows), sense)
+            return before_now + more, rest, before.state, STICKING if sticks else SLIDING, False
+        sense = np.sign(needed + grows) or -1.0
         breaks = 0.0 if abs(needed) >= held else np.clip((sense * held - needed) / grows, 0.0, 1.0)
         later, past = _moments(0.0, breaks, *(needed + grows * breaks * np.array([0.0, 0.5, 1.0])))
         more, rest, sticks = _slide(way, 0.0, breaks, (pull * needed, pull * grows), sense)

@@ -67,11 +67,29 @@ def test_short_sticks_are_no_stops_and_no_stops_give_no_bursts():
 
 
 @pytest.mark.parametrize("width", [1, 3, 51, 1001])
-def testmoving_mean_is_that_of_scipy(width):
+def test_moving_mean_is_that_of_scipy(width):
     """To round-off; importing scipy.ndimage takes longer than all measures of a run."""
-    share = np.random.default_rng(1).integers(0, 4, 500) / 3
-    expected = scipy.ndimage.uniform_filter1d(share, width, mode="nearest")
+    share = np.random.default_rng(1).integers(0, 4, 600) / 3
+    expected = scipy.ndimage.uniform_filter1d(share, width, mode="reflect")
     np.testing.assert_allclose(moving_mean(share, width), expected, rtol=1e-12, atol=1e-14)
+
+
+@pytest.mark.parametrize("size", [1, 2, 7])
+def test_moving_mean_wider_than_the_record_is_its_mean(size):
+    share = np.arange(float(size))
+    np.testing.assert_array_equal(moving_mean(share, 1001), np.full(size, share.mean()))
+
+
+@pytest.mark.parametrize("cut", range(1, 50, 4))
+def test_a_record_that_ends_in_a_fast_cycle_has_no_phase_at_its_end(cut):
+    """It sticks for 0.9 of each millisecond, or for 0.1; the record ends in a stick or in a slip."""
+    size = 20_000 + 2 * cut
+    for share, words, other in ((0.9, "sticking", "sliding"), (0.1, "sliding", "sticking")):
+        slides = np.arange(size) % 100 >= 100 * share
+        run = record([("sticking", size / RATE)])
+        run["status_share"] = (("time", "contact_status"), np.eye(3)[np.where(slides, 2, 1)])
+        np.testing.assert_allclose(analysis.phases(run, words), [[0.0, size / RATE]], atol=2e-5)
+        assert len(analysis.phases(run, other)) == 0
 
 
 def test_complete_drops_what_the_record_cuts():

@@ -114,6 +114,18 @@ def slide_through(slip, begin, drive, pull, sense, law, laws, i, step):
     return later, past, False
 
 
+@numba.njit(inline="always", **STRICT)
+def broken_before(earlier, grows, held, sliding, sense):
+    """Return the past part of the ratio, and the slip for a pull of one, of a stick that broke within the last step.
+
+    The ratio grew from `earlier` until it was `held` and has been that of `sliding` since.
+    """
+    broke = min(max((sense * held - earlier) / grows, 0.0), 1.0) if grows != 0.0 else 0.0
+    stuck, left = 0.5 * broke * broke, 0.5 * (1.0 - broke * broke)
+    past = stuck * earlier + grows * broke**3 / 3.0 + left * sense * sliding
+    return past, grows * (1.0 - broke**3) / 3.0 + left * (earlier - sense * sliding)
+
+
 @numba.njit(**STRICT)
 def ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step):
     """Return the ratio of forces over a step under a set-valued law, its past part and status.
@@ -131,12 +143,14 @@ def ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step
         grows = needed - earlier
         if not let_go and abs(needed) <= held and abs(needed + grows) <= held:
             return needed, 0.5 * needed + grows / 3.0, STICKING
-        sense = 1.0 if needed + grows > 0.0 else -1.0
         if abs(needed) > held:
             sense = 1.0 if needed > 0.0 else -1.0
-        broke = 0.0
-        if abs(needed) < held:
-            broke = min(max((sense * held - needed) / grows, 0.0), 1.0)
+            past, begun = broken_before(earlier, grows, held, sense * ratio_of(0.0, sense, law, laws, i, step), sense)
+            drive = (pull * needed, pull * grows)
+            more, rest, sticks = slide_through(pull * begun, 0.0, drive, pull, sense, law, laws, i, step)
+            return past + more, rest, STOPPED if sticks else SLIDING
+        sense = 1.0 if needed + grows > 0.0 else -1.0
+        broke = min(max((sense * held - needed) / grows, 0.0), 1.0) if abs(needed) < held else 0.0
         first, less = moments(0.0, broke, needed, needed + 0.5 * broke * grows, needed + broke * grows)
         more, rest, sticks = slide_through(0.0, broke, (pull * needed, pull * grows), pull, sense, law, laws, i, step)
         ratio = 0.5 * needed - grows / 6.0 + first + more

@@ -15,8 +15,6 @@ SMOOTHING = 5e-3
 SHORTEST_STOP = 20e-3
 # Share of a sample up to which a status may result from rounding.
 ROUND_OFF = 1e-9
-# Widest moving mean, over the length of the signal.
-WIDEST = 20
 
 
 def phases(run: xr.Dataset, status: str, smoothing: float = SMOOTHING) -> Array:
@@ -134,10 +132,16 @@ def inside(run: xr.Dataset, intervals: Array) -> Array:
 
 
 def moving_mean(values: Array, width: int) -> Array:
-    """Return the mean over an odd number of samples around each, with the first and last repeated beyond the ends."""
-    # A wider mean would only add more repeated values.
-    width = min(width, WIDEST * values.size | 1)
-    sums = np.cumsum(repeated_ends(values, width // 2 + 1, width // 2))
+    """Return the mean over an odd number of samples around each, with the signal mirrored at both ends.
+
+    So a record may end anywhere in a fast cycle of stick and slip: the shares of its statuses near the end stay those
+    of the cycle.
+    """
+    half = width // 2
+    if half > values.size:
+        return np.full(values.size, values.mean())
+    mirrored = np.concatenate([values[:half][::-1], values, values[values.size - half :][::-1]])
+    sums = np.cumsum(np.concatenate([[0.0], mirrored]))
     return np.asarray(sums[width:] - sums[:-width]) / width
 
 

@@ -206,7 +206,9 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         tonality, tone, cycle = _likeness(signals.forces[:, first:], mean), change_rate, change_rate
     elif is_loud or (heard.growth > 1.0 and audibility >= BUDDING * limits.faint):
         weight = between_stops(sticking[heard_from:], _odd(SMOOTHING / interval))
-        tone = strongest_tone(weight * signals.forces[:, heard_from:], interval, limits.frame, limits.lowest_tone)
+        forces = signals.forces[:, heard_from:]
+        about_the_mean = forces - (forces @ weight / weight.sum())[:, None]
+        tone = strongest_tone(weight * about_the_mean, interval, limits.frame, limits.lowest_tone)
     elif settles and loss >= limits.lossy and swing < limits.faint:
         # A vibration that the samples do not show is at their rate, or a multiple of it.
         tonality, tone = 1.0, 1.0 / interval

@@ -14,6 +14,7 @@ from .balance import (
     Balance,
     Equations,
     at_statuses,
+    held_across,
     held_rows,
     rank,
     rigid_rows,
@@ -22,6 +23,7 @@ from .balance import (
 )
 from .complementarity import all_sets, searched
 from .conditions import broken, margins_of, slides_on, stopping
+from .held_twice import held_twice
 from .structure import SEPARATED, SLIDING, STICKING, Structure
 
 # Largest number of contacts with which all sets of closed contacts are tried.
@@ -292,14 +294,8 @@ def _check_determined(structure: Structure, status: Sequence[str], share: Array)
     held, pushes = held[rigid], pushes[rigid]
     if rank(held) == len(held) or rank(np.hstack([held, pushes])) == rank(held):
         return
-    who = [*closed, *stuck, *stuck]
-    names = ", ".join(dict.fromkeys(structure.system.contact_names[who[row]] for row in rigid))
-    raise ArgumentError(
-        "contacts",
-        "not hold the same motion twice, which leaves forces undetermined",
-        who,
-        got=f"{names}; use elastic bodies or another status",
-    )
+    who = [*closed, *stuck, *held_across(structure, stuck)]
+    raise held_twice(structure.system, [who[row] for row in rigid])
 
 
 def _check_unbraked(structure: Structure, free: Array) -> None:
