@@ -249,25 +249,27 @@ def through_a_spring(surface: Surface, words: str, dashpot: float = 0.0) -> Shak
     return Shaken(f"{words} through {means}", surface, _system(surface, [push], connections), accelerations)
 
 
-def under_a_rider(surface: Surface, words: str) -> Shaken:
+def under_a_rider(surface: Surface, words: str, force: float = FORCE) -> Shaken:
     """Return a track under a force, and under a loaded mass on a contact with a stiffness, which stays closed."""
     track, shape, ridden = surface.track, surface.at(SHAKEN), surface.at(RIDDEN)
     rider = PointMass(RIDER, name="rider")
     depth = LOAD / STIFFNESS
-    drives: list[Drive] = [
-        Force(track.at(SHAKEN), y=FORCE, history=Harmonic(FREQUENCY)),
-        Force(rider.centre, y=-LOAD),
-        InitialState(rider, displacement=(0.0, -depth)),
-    ]
+    drives: list[Drive] = [Force(rider.centre, y=-LOAD), InitialState(rider, displacement=(0.0, -depth))]
+    if force:
+        drives.append(Force(track.at(SHAKEN), y=force, history=Harmonic(FREQUENCY)))
     contact = PointContact(rider.centre, track, at=RIDDEN, stiffness=STIFFNESS)
 
     def accelerations(time: float, displacement: Array, velocity: Array) -> Array:
         pressed = max(STIFFNESS * (ridden @ displacement[:-1] - displacement[-1]), 0.0)
-        bent = _alone(surface, displacement[:-1], velocity[:-1]) + shape * swing(time) - ridden * pressed
+        bent = (
+            _alone(surface, displacement[:-1], velocity[:-1]) + shape * force / FORCE * swing(time) - ridden * pressed
+        )
         return np.append(bent, (pressed - LOAD) / RIDER)
 
     system = _system(surface, drives, contact=contact)
-    return Shaken(f"{words} under a force and a rider", surface, system, accelerations, (-depth, 0.0))
+    return Shaken(
+        f"{words} under {'a force and ' if force else ''}a rider", surface, system, accelerations, (-depth, 0.0)
+    )
 
 
 def under_a_moving_rider(surface: Surface, words: str) -> Shaken:
@@ -304,6 +306,7 @@ def shaken() -> Outcome:
             through_a_spring(surface, words),
             through_a_spring(surface, words, DASHPOT),
             under_a_rider(surface, words),
+            under_a_rider(surface, words, force=0.0),
             under_a_moving_rider(surface, words),
         ):
             found, drawn = one.rows()
