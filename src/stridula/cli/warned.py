@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -16,11 +16,12 @@ def doubts_said() -> Iterator[None]:
     """Print each doubtful value once, in one line."""
     with warnings.catch_warnings():
         warnings.simplefilter("always", DoubtfulValue)
-        otherwise, said = warnings.showwarning, set()
+        otherwise: Callable[..., None] = warnings.showwarning
+        said: set[str] = set()
 
-        def show(message: Warning | str, category: type[Warning], *rest: Any) -> None:
+        def show(message: Warning | str, category: type[Warning], *place: Any, **options: Any) -> None:
             if not issubclass(category, DoubtfulValue):
-                otherwise(message, category, *rest)
+                otherwise(message, category, *place, **options)
             elif str(message) not in said:
                 said.add(str(message))
                 say(f"doubtful: {message}", GOOD)
