@@ -10,19 +10,21 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, positive, within
-from .heard import Frames, frames, strongest_tone
-from .phases import ROUND_OFF, SMOOTHING
+from .heard import Frames, frames
+from .pitch import AudibleSpectrum, audible_spectrum
 from .several_contacts import cycles, landings_of, loads, mean_shares, statuses, stretches, together
-from .status_changes import MIXED, between_stops, last_rest, prevailing, regularity, slips, vibrations
+from .status_changes import MIXED, last_rest
+from .status_cycles import StatusCycles
 
 STICKING = 1
 # Share of samples with a change of status above which the cycle is faster than the samples: a cycle sampled eight
 # times per period has a quarter.
 UNRESOLVED = 0.5
-# Time steps up to which a stick or a slip may be noise.
-NOISY_STEPS = 2.0
 # Fraction of `faint` above which a growing tone counts.
 BUDDING = 0.02
+# Difference from a multiple of the frequency of the cycles up to which a pitch is a partial of these [1], and share of
+# their repetition that a partial has by itself at most [1].
+NEAR, ALONE = 0.02, 0.6
 
 
 class Signals(NamedTuple):
@@ -188,10 +190,8 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
 
     normal = signals.forces[: signals.groups, first:]
     mean = math.hypot(*np.abs(normal).mean(axis=1).tolist()) or 1.0
-    sticking = together(signals.share[..., STICKING], carried)
-    noise, fastest = NOISY_STEPS * signals.step / interval, 1.0 / (limits.lowest_tone * interval)
-    found = slips(sticking[first:], noise * (1.0 + ROUND_OFF), fastest)
-    caught = found[found[:, 1] < (count - first) * (1.0 - ROUND_OFF), 1]
+    sticking = together(signals.share[first:, :, STICKING], carried)
+    slipping = StatusCycles(sticking, signals.step / interval, 1.0 / (limits.lowest_tone * interval))
     landings = None if signals.landings is None else signals.landings[first:]
     landed = landings_of(landings, signals.share[first:, :, 0])
     change_rate = cycles(status[:, first:], landed[carried > 0.0]) / time
@@ -200,15 +200,15 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     heard = _heard(signals.forces[:, heard_from:], interval, limits)
     counted = heard.later_half() if settles else heard
     audibility = counted.level / mean
-    tonality, tone, cycle = counted.tonality, float("nan"), _cycle(caught, interval)
+    tonality, tone, cycle = counted.tonality, float("nan"), 1.0 / (slipping.rhythm * interval)
     is_loud = audibility >= limits.faint or change_rate >= limits.lowest_tone
-    if audibility < limits.faint and np.mean(status[:, first:] == MIXED, axis=1).max() >= UNRESOLVED:
+    is_hidden = np.mean(status[:, first:] == MIXED, axis=1).max() >= UNRESOLVED
+    bursts = np.array([[0, count - heard_from]]) if settles else slipping.bursts
+    spectrum = audible_spectrum(signals.forces[:, heard_from:], interval, bursts, limits.frame, limits.lowest_tone)
+    if audibility < limits.faint and is_hidden and spectrum.level < limits.faint * mean:
         tonality, tone, cycle = _likeness(signals.forces[:, first:], mean), change_rate, change_rate
     elif is_loud or (heard.growth > 1.0 and audibility >= BUDDING * limits.faint):
-        weight = between_stops(sticking[heard_from:], _odd(SMOOTHING / interval))
-        forces = signals.forces[:, heard_from:]
-        about_the_mean = forces - (forces @ weight / weight.sum())[:, None]
-        tone = strongest_tone(weight * about_the_mean, interval, limits.frame, limits.lowest_tone)
+        tone = _pitch(spectrum, 1.0 / (slipping.period * interval), limits)
     elif settles and loss >= limits.lossy and swing < limits.faint:
         # A vibration that the samples do not show is at their rate, or a multiple of it.
         tonality, tone = 1.0, 1.0 / interval
@@ -222,9 +222,9 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         growth=heard.growth,
         tone=tone,
         cycle=cycle,
-        periodicity=regularity(caught),
+        periodicity=slipping.periodicity,
         impact_rate=float(landed.sum()) / time,
-        slip_rate=caught.size / time,
+        slip_rate=slipping.cycles.size / time,
         change_rate=change_rate,
         settle_time=rest * interval if rest < count else float("nan"),
         level=math.hypot(*normal.std(axis=1).tolist()) / mean,
@@ -233,15 +233,21 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         loss=loss,
         loss_growth=loss_growth,
         last_status=int(status[:, -1].max()) if settles else MIXED,
-        slips=int(caught.size),
-        periods=prevailing(np.diff(vibrations(found, fastest), axis=1)[:, 0]) * interval * tone,
+        slips=int(slipping.caught.size),
+        periods=slipping.prevailing_vibration * interval * tone,
         is_short=(count - heard_from) * interval < 1.5 * limits.frame,
     )
 
 
-def _odd(width: float) -> int:
-    """Return the odd number nearest to a number of samples."""
-    return 2 * round(width / 2.0) + 1
+def _pitch(spectrum: AudibleSpectrum, cycle: float, limits: Thresholds) -> float:
+    """Return the pitch that is heard; the frequency of the cycles of the status where it is a partial of these [Hz]."""
+    pitch = spectrum.pitch
+    if math.isnan(pitch) or math.isnan(cycle) or cycle < limits.lowest_tone:
+        return pitch
+    number = round(pitch / cycle)
+    if number < 2 or abs(pitch - number * cycle) > max(0.5 / spectrum.frame, NEAR * pitch):
+        return pitch
+    return cycle if spectrum.repeats(1.0 / pitch) < ALONE * spectrum.repeats(1.0 / cycle) else pitch
 
 
 def _heard(forces: Array, interval: float, limits: Thresholds) -> Frames:
@@ -253,11 +259,6 @@ def _heard(forces: Array, interval: float, limits: Thresholds) -> Frames:
     end = forces.shape[1] // ratio * ratio
     means = np.asarray(sum(forces[:, i:end:ratio] for i in range(ratio)) / ratio)
     return frames(means, ratio * interval, limits.frame, limits.lowest_tone)
-
-
-def _cycle(caught: Array, interval: float) -> float:
-    """Return the mean frequency of slips that end at some samples [Hz], NaN for fewer than two."""
-    return (caught.size - 1) / (float(caught[-1] - caught[0]) * interval) if caught.size > 1 else float("nan")
 
 
 def _likeness(forces: Array, mean: float) -> float:
