@@ -15,11 +15,14 @@ from ..weighting import a_weighting
 FEWEST = 8
 # Points of a spectrum per point that a frame resolves, so that a parabola finds the top of a peak.
 FINE = 4
-# Power over that of the strongest tone [1], from which on another may be the pitch in its place, and share of the audible
-# power that must repeat itself with its period [1].
+# Power over that of the strongest tone [1], from which on another may be the pitch in its place, and share of the
+# audible power that must repeat itself with its period [1].
 NEARLY, REPEATS = 0.5, 0.3
 # Longest period in which repetition is measured, in frames.
 LONGEST = 0.5
+# Difference from a multiple of the frequency of cycles up to which a tone may be a partial of these [1], and largest
+# repetition with its own period, over that with the period of the cycles, if it is [1].
+NEAR, ALONE = 0.02, 0.6
 # Other tones are at most this far below the strongest [dB], and stand out by this much [dB].
 DEEP, PROMINENT = 20.0, 6.0
 
@@ -71,9 +74,22 @@ class AudibleSpectrum:
         kept = [top for top in order if level[top] > level[order[0]] - DEEP and _stands_out(level, int(top))]
         return np.array([self._at(int(top)) for top in kept[:most]])
 
-    def repeats(self, period: float) -> float:
-        """Return the share of the audible power, A-weighted, that repeats itself after a time [s]."""
-        return float(self._repetition(np.array([period]))[0])
+    def pitch_among(self, cycle: float) -> float:
+        """Return the pitch of a contact whose status recurs [Hz]: that of its cycles if the tone is a partial of these.
+
+        Parameters
+        ----------
+        cycle : float
+            Frequency of the cycles [Hz], NaN if none recur.
+        """
+        pitch = self.pitch
+        if not (pitch > 0.0 and cycle > 0.0):
+            return pitch
+        alone, together = self._repetition(np.array([1.0 / pitch, 1.0 / cycle]))
+        number = round(pitch / cycle)
+        is_near = number > 1 and abs(pitch - number * cycle) <= max(0.5 / self.frame, NEAR * pitch)
+        is_measured = cycle * self.frame * LONGEST >= 1.0
+        return cycle if alone < max(REPEATS, is_near * is_measured * ALONE * together) else pitch
 
     @cached_property
     def _weighted(self) -> Array:

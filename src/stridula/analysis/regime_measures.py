@@ -22,9 +22,10 @@ STICKING = 1
 UNRESOLVED = 0.5
 # Fraction of `faint` above which a growing tone counts.
 BUDDING = 0.02
-# Difference from a multiple of the frequency of the cycles up to which a pitch is a partial of these [1], and share of
-# their repetition that a partial has by itself at most [1].
-NEAR, ALONE = 0.02, 0.6
+# Level in bursts over that of the whole record, below which bursts are not what is heard [1].
+FAINTER = 0.5
+# Shortest cycle of status that samples show [samples].
+SHORTEST_CYCLE = 1.5
 
 
 class Signals(NamedTuple):
@@ -108,21 +109,23 @@ class Measures:
     separated, sticking, sliding : float
         Shares of the time [1].
     tonality : float
-        Share of the audible power that repeats itself [1]; for cycles faster than the samples, their similarity.
+        Share of the audible power that repeats itself [1]; for cycles of faint forces the share of them that recur, for
+        cycles faster than the samples their similarity.
     audibility : float
         Root mean square of the audible forces over the mean normal force [1].
     growth : float
         Audibility of the later half of the time over that of the earlier half [1], NaN for one frame.
     tone : float
-        Frequency of a cycle faster than the samples, else of the strongest audible tone [Hz]; NaN if there is none.
+        Pitch of the forces in bursts, or frequency of a cycle faster than the samples [Hz]; NaN if nothing is audible.
     cycle : float
-        Frequency of the slips, or of a cycle faster than the samples [Hz]; NaN for fewer than two.
+        Frequency of the cycles of stick and slip, or of a cycle faster than the samples [Hz]; NaN for fewer than two.
     periodicity : float
         Regularity of the ends of the slips [1], NaN for fewer than three.
     impact_rate, slip_rate : float
         Landings, and slips, per second [1/s].
     change_rate : float
-        Least number of cycles of changing status per second that explains the samples [1/s].
+        Least number of cycles of changing status per second that explains the samples [1/s], or their frequency in
+        bursts if they recur.
     settle_time : float
         Time, since the first sample interval, after which the status no longer changes [s]; NaN if it does.
     level, swing : float
@@ -200,15 +203,23 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     heard = _heard(signals.forces[:, heard_from:], interval, limits)
     counted = heard.later_half() if settles else heard
     audibility = counted.level / mean
+    recurring = 1.0 / (slipping.period * interval)
+    # Cycles that recur in bursts are faster than all changes over the time.
+    change_rate = max(change_rate, recurring) if recurring > 0.0 else change_rate
     tonality, tone, cycle = counted.tonality, float("nan"), 1.0 / (slipping.rhythm * interval)
+    cycle = recurring if recurring > 0.0 else cycle
+    if audibility < limits.faint and recurring >= limits.lowest_tone:
+        tonality = max(tonality, slipping.recurrence)
     is_loud = audibility >= limits.faint or change_rate >= limits.lowest_tone
     is_hidden = np.mean(status[:, first:] == MIXED, axis=1).max() >= UNRESOLVED
-    bursts = np.array([[0, count - heard_from]]) if settles else slipping.bursts
-    spectrum = audible_spectrum(signals.forces[:, heard_from:], interval, bursts, limits.frame, limits.lowest_tone)
+    spectrum = _spectrum(signals.forces[:, heard_from:], interval, None if settles else slipping.bursts, heard, limits)
     if audibility < limits.faint and is_hidden and spectrum.level < limits.faint * mean:
-        tonality, tone, cycle = _likeness(signals.forces[:, first:], mean), change_rate, change_rate
+        tonality, tone = _likeness(signals.forces[:, first:], mean), change_rate
+        if slipping.period >= SHORTEST_CYCLE:
+            tonality, tone = slipping.recurrence, recurring
+        cycle = tone
     elif is_loud or (heard.growth > 1.0 and audibility >= BUDDING * limits.faint):
-        tone = _pitch(spectrum, 1.0 / (slipping.period * interval), limits)
+        tone = spectrum.pitch_among(recurring)
     elif settles and loss >= limits.lossy and swing < limits.faint:
         # A vibration that the samples do not show is at their rate, or a multiple of it.
         tonality, tone = 1.0, 1.0 / interval
@@ -224,7 +235,7 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         cycle=cycle,
         periodicity=slipping.periodicity,
         impact_rate=float(landed.sum()) / time,
-        slip_rate=slipping.cycles.size / time,
+        slip_rate=len(slipping.cycles) / time,
         change_rate=change_rate,
         settle_time=rest * interval if rest < count else float("nan"),
         level=math.hypot(*normal.std(axis=1).tolist()) / mean,
@@ -233,21 +244,22 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         loss=loss,
         loss_growth=loss_growth,
         last_status=int(status[:, -1].max()) if settles else MIXED,
-        slips=int(slipping.caught.size),
+        slips=len(slipping.caught),
         periods=slipping.prevailing_vibration * interval * tone,
         is_short=(count - heard_from) * interval < 1.5 * limits.frame,
     )
 
 
-def _pitch(spectrum: AudibleSpectrum, cycle: float, limits: Thresholds) -> float:
-    """Return the pitch that is heard; the frequency of the cycles of the status where it is a partial of these [Hz]."""
-    pitch = spectrum.pitch
-    if math.isnan(pitch) or math.isnan(cycle) or cycle < limits.lowest_tone:
-        return pitch
-    number = round(pitch / cycle)
-    if number < 2 or abs(pitch - number * cycle) > max(0.5 / spectrum.frame, NEAR * pitch):
-        return pitch
-    return cycle if spectrum.repeats(1.0 / pitch) < ALONE * spectrum.repeats(1.0 / cycle) else pitch
+def _spectrum(
+    forces: Array, interval: float, bursts: Array | None, heard: Frames, limits: Thresholds
+) -> AudibleSpectrum:
+    """Return the audible spectrum of the forces in bursts, or of all where there are none or these are fainter."""
+    if bursts is not None:
+        found = audible_spectrum(forces, interval, bursts, limits.frame, limits.lowest_tone)
+        if found.level >= FAINTER * heard.level:
+            return found
+    whole = np.array([[0, forces.shape[1]]])
+    return audible_spectrum(forces, interval, whole, limits.frame, limits.lowest_tone)
 
 
 def _heard(forces: Array, interval: float, limits: Thresholds) -> Frames:

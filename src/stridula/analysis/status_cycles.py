@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from .phases import ROUND_OFF, moving_mean
-from .recurrences import period
+from .recurrences import recurrence
 from .status_changes import prevailing, regularity, slips, vibrations
 
 # Time steps up to which a stick or a slip may be noise.
@@ -43,32 +43,43 @@ class StatusCycles:
 
     @cached_property
     def caught(self) -> Array:
-        """Ends of the slips that end in a stick phase, shape (slips,)."""
-        return self._ended(self.slips)
+        """Slips that end in a stick phase, as starts and ends, shape (slips, 2)."""
+        return self._caught(self.slips)
 
     @cached_property
     def cycles(self) -> Array:
-        """Ends of each cycle of stick and slip, shape (cycles,): all slips of a vibration, else one of each slip."""
+        """Slips of each cycle of stick and slip, shape (cycles, 2): all slips of a vibration, else whole slips."""
         inside = np.searchsorted(self.slips[:, 0], self._each[:, 0] + 0.5, side="right") - 1
         counts = np.bincount(inside[inside >= 0], minlength=len(self.slips))
         vibrates = counts >= CYCLES
-        return np.sort(np.concatenate([self._ended(self._each[vibrates[inside]]), self._ended(self.slips[~vibrates])]))
+        found = np.concatenate([self._each[vibrates[inside]], self.slips[~vibrates]])
+        return self._caught(found[np.argsort(found[:, 0])])
 
     @cached_property
     def rhythm(self) -> float:
         """Period of the slips [samples], their mean distance if they do not recur; NaN for fewer than two."""
-        return _mean_period(self.caught)
+        found, _ = recurrence(self.caught)
+        ends = self.caught[:, 1]
+        return float(np.diff(ends).mean()) if np.isnan(found) and ends.size > 1 else found
 
     @cached_property
     def period(self) -> float:
         """Period of the cycles [samples], NaN if they do not recur."""
-        return period(self.cycles)
+        return self._recurrence[0]
+
+    @property
+    def recurrence(self) -> float:
+        """Share of the cycles that recur after the period [1], 0 if they do not recur."""
+        return self._recurrence[1]
+
+    @cached_property
+    def _recurrence(self) -> tuple[float, float]:
+        return recurrence(self.cycles)
 
     @property
     def periodicity(self) -> float:
         """Regularity of the slips [1], of the cycles where these recur within slips; NaN for fewer than three."""
-        ends = self.caught if self.caught.size > 2 else self.cycles
-        return regularity(ends)
+        return regularity((self.caught if len(self.caught) > 2 else self.cycles)[:, 1])
 
     @cached_property
     def prevailing_vibration(self) -> float:
@@ -100,14 +111,6 @@ class StatusCycles:
         moves = moving_mean(self._sticking, 2 * round(STOP * self.lowest / 2.0) + 1) < 0.5
         return np.flatnonzero(np.diff(np.concatenate([[False], moves, [False]]))).reshape(-1, 2)
 
-    def _ended(self, found: Array) -> Array:
-        """Return the ends of slips that the end of the record does not cut."""
-        return found[found[:, 1] < self.size * (1.0 - ROUND_OFF), 1]
-
-
-def _mean_period(ends: Array) -> float:
-    """Return the period of events, or else their mean distance; NaN for fewer than two."""
-    found = period(ends)
-    if np.isnan(found) and ends.size > 1:
-        return float(ends[-1] - ends[0]) / (ends.size - 1)
-    return found
+    def _caught(self, found: Array) -> Array:
+        """Return the slips that the end of the record does not cut."""
+        return found[found[:, 1] < self.size * (1.0 - ROUND_OFF)]
