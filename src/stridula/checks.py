@@ -16,6 +16,8 @@ STATUS_WORDS = ("separated", "sticking", "sliding")
 LONGEST = 80
 # Longest list of names in a message, unless the first name alone is longer.
 LONGEST_LIST = 160
+# A turn [rad], beyond rounding.
+WHOLE_TURN = 2.0 * math.pi * (1.0 + 1e-9)
 _UNSAID: Any = object()
 
 
@@ -110,6 +112,14 @@ def within(name: str, value: Any, low: float, high: float, *, ends: bool = True)
         least, most = bounds(low, high)
         words = f"from {least} to {most}" if ends else f"strictly between {least} and {most}"
         raise ArgumentError(name, f"be {words}", value)
+    return number
+
+
+def within_a_turn(name: str, value: Any) -> float:
+    """Return an angle [rad] as a float if it is at most a turn in either sense: degrees are refused."""
+    number = finite(name, value)
+    if abs(number) > WHOLE_TURN:
+        raise ArgumentError(name, "be from -2 pi to 2 pi rad", value)
     return number
 
 

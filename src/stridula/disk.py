@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
@@ -20,6 +20,15 @@ except ImportError:
 # Longest name of a file that a message shows in full.
 LONGEST_NAME = 200
 LEFT_OVER = re.compile(r"\.stridula-(\d+)-\d+\.part")
+# Endings of names by which programs recognise the format of a file.
+TABLES = (".csv", ".tsv", ".txt", ".dat", ".xls", ".xlsx", ".ods", ".parquet", ".feather", ".json", ".yaml", ".yml")
+ARRAYS = (".nc", ".nc4", ".cdf", ".netcdf", ".h5", ".hdf", ".hdf5", ".mat", ".npy", ".npz", ".pkl", ".pickle", ".zarr")
+PICTURES = (".png", ".pdf", ".svg", ".jpg", ".jpeg", ".gif", ".webp", ".tif", ".tiff", ".eps", ".mp4", ".webm", ".avi")
+SOUNDS = (".wav", ".wave", ".mp3", ".flac", ".ogg", ".opus", ".m4a", ".aac", ".aif", ".aiff", ".au", ".wma", ".raw")
+OTHERS = (".toml", ".py", ".html", ".md", ".rst", ".zip", ".gz")
+FORMATS = (*TABLES, *ARRAYS, *PICTURES, *SOUNDS, *OTHERS)
+# Endings of records: NetCDF files, which are also HDF5 files.
+RECORDS = (".nc", ".nc4", ".cdf", ".netcdf", ".h5", ".hdf", ".hdf5")
 
 
 def read(path: str | Path, size: int = -1) -> bytes:
@@ -35,6 +44,29 @@ def check_path(name: str, path: object) -> None:
     if not isinstance(text, str) or "\0" in text:
         got = repr(path) if isinstance(path, (str, float)) else f"a {type(path).__name__}"
         raise ArgumentError(name, "be the name of a file", got=got[:LONGEST_NAME])
+
+
+def check_ending(name: str, path: str | os.PathLike[str], own: Sequence[str], kind: str, other: str = "") -> None:
+    """Raise ValueError if a file has the ending of a format other than its own; any other ending, or none, may be used.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument, for the message.
+    path : str or Path
+        The file.
+    own : sequence of str
+        Endings of its format, the usual one first.
+    kind : str
+        Its format in words.
+    other : str, optional
+        Ways to write other formats, in words, for the message.
+    """
+    check_path(name, path)
+    ending = Path(path).suffix.lower()
+    if ending in FORMATS and ending not in own:
+        got = f"{named(path)}; {other}" if other else named(path)
+        raise ArgumentError(name, f"be a {kind}, {own[0]}", str(path), got=got)
 
 
 def is_there(path: str | os.PathLike[str]) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 
 from .arrays import Array
 from .bodies import Body, BodyPoint, FiniteElementBeam, PointMass, ReducedBody, RigidBody
-from .checks import STATUS_WORDS, ArgumentError, instance, positive
+from .checks import STATUS_WORDS, ArgumentError, instance, positive, within_a_turn
 from .declared import (
     Angle,
     Choice,
@@ -353,7 +353,8 @@ class InitialEquilibrium(Drive):
         Largest displacement of a contact point in that mode [m]; among the tips and the points of the tracks that they
         touch, along x or along y.
     phase : float, optional
-        Phase of that displacement at the start [rad]; at 0 it is at its positive peak, at pi/2 it falls through zero.
+        Phase of that displacement at the start [rad]; at 0 it is at its positive peak, at pi/2 it falls through zero;
+        from -2 pi to 2 pi.
 
     Raises
     ------
@@ -370,6 +371,7 @@ class InitialEquilibrium(Drive):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        within_a_turn("phase", self.phase)
         if self.mode is not None:
             positive("amplitude", self.amplitude)
         elif self.amplitude:

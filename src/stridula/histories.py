@@ -10,7 +10,7 @@ from typing import Annotated, ClassVar, Protocol
 import numpy as np
 
 from .arrays import Array
-from .checks import ArgumentError, brief, finite
+from .checks import ArgumentError, brief, finite, within_a_turn
 from .declared import Angle, Each, Frequency, Number, Ratio, Time, check_declared
 
 # Relative distance within which a time counts as that of a jump: steps divide a time exactly only up to rounding.
@@ -113,7 +113,7 @@ class Harmonic:
     mean : float, optional
         Mean about which it swings, as a factor [1].
     phase : float, optional
-        Phase at the start [rad].
+        Phase at the start [rad], from -2 pi to 2 pi.
     """
 
     kind: ClassVar[str] = "harmonic"
@@ -124,6 +124,7 @@ class Harmonic:
 
     def __post_init__(self) -> None:
         check_declared(self)
+        within_a_turn("phase", self.phase)
 
     @property
     def settled(self) -> float | None:

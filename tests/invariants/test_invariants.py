@@ -205,8 +205,12 @@ def turned(run):
     run["tangential_force"] *= -1
 
 
-def weaker(run):
+def a_little_weaker(run):
     run["tangential_force"] *= 1 - 1e-6
+
+
+def weaker(run):
+    run["tangential_force"] *= 0.8
 
 
 def overlapping(run):
@@ -225,10 +229,11 @@ def leaking(run):
     ("change", "law", "words"),
     [
         (turned, st.Coulomb(0.4), "slides the wrong way"),
-        (turned, st.Stribeck(0.5, 0.3, 0.02), "friction gives energy"),
+        (turned, st.Stribeck(0.5, 0.3, 0.02), "slides the wrong way"),
         (turned, st.LuGre(0.5, 0.3, 0.02, 1e4), "off the law"),
         (turned, st.RateAndState(0.5, 0.02, 0.01, 1e-4, 1e-2), "off the law"),
-        (weaker, st.ExponentialWeakening(0.5, 0.3, 0.02), "slides inside the cone"),
+        (a_little_weaker, st.Coulomb(0.4), "slides inside the cone"),
+        (weaker, st.ExponentialWeakening(0.5, 0.3, 0.02), "off the law"),
         (weaker, st.LuGre(0.5, 0.3, 0.02, 1e4, 1.0), "off the law"),
         (weaker, st.RateAndState(0.5, 0.02, 0.01, 1e-4, 1e-2, "slip"), "off the law"),
         (overlapping, st.Coulomb(0.4), "gap below zero"),

@@ -113,13 +113,12 @@ def state_after(law, state, v, h):
     return distance / speed * (speed * state / distance) ** np.exp(-speed * h / distance)
 
 
-def ratio_with_state(law, state, v, h):
-    """Ratio of forces over a step at slip velocity `v`: with the mean of the state, and its rate."""
-    new = state_after(law, state, v, h)
-    mean, rate = (state + new) / 2, (new - state) / h
+def ratio_with_state(law, state, v):
+    """Ratio of forces at slip velocity `v`."""
     if isinstance(law, st.LuGre):
-        return law.stiffness * mean + law.damping * rate + law.viscous * v
-    exponent = (law.reference + law.b * np.log(law.velocity * mean / law.slip_distance)) / law.a
+        limit = (law.kinetic + (law.static - law.kinetic) * np.exp(-((v / law.velocity) ** 2))) / law.stiffness
+        return law.stiffness * state + law.damping * (v - abs(v) * state / limit) + law.viscous * v
+    exponent = (law.reference + law.b * np.log(law.velocity * state / law.slip_distance)) / law.a
     return law.a * np.arcsinh(v / (2 * law.velocity) * np.exp(exponent))
 
 
@@ -469,7 +468,9 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
                 one.last_slip = 0.0
             one.given = None
             if has_state(one.law):
-                one.given = ratio_with_state(one.law, one.state, speed, h)
+                one.given = ratio_with_state(
+                    one.law, (one.state + state_after(one.law, one.state, speed, h)) / 2, speed
+                )
             elif speed != 0.0:
                 one.given = np.sign(speed) * curve(one.law, abs(speed))
         return [one for one in touches if one.gap == 0.0]

@@ -603,7 +603,8 @@ BAD_SWEEPS = [
     ((*VARY, "--workers", "0"), "workers must be at least 1"),
     ((*VARY, "--out", "folder"), "it is a directory"),
     ((*VARY, "--out", "none/map.nc"), "there is no folder 'none'"),
-    ((*VARY, "--out", "good.csv"), "out must be a new file or that of this sweep, got 'good.csv', another file"),
+    ((*VARY, "--out", "good.csv"), "--out must be a NetCDF file, .nc, got 'good.csv'"),
+    ((*VARY, "--out", "text.nc"), "out must be a new file or that of this sweep, got 'text.nc', another file"),
     ((*VARY, "--out", "other.nc"), "got 'other.nc', of another scenario and other points or options"),
     ((*VARY, "--scheduler", "nonsense://x"), "scheduler must answer, got 'nonsense://x'"),
 ]
@@ -623,6 +624,7 @@ def test_a_bad_sweep_is_one_line_and_writes_nothing(stridula, tmp_path, monkeypa
     tables = {"good": "friction\n0.3\n", "ragged": "friction,angle\n0.3,1\n0.3\n", "header": "friction\n"}
     for name, text in {**tables, "twice": "friction,friction\n1,2\n"}.items():
         (tmp_path / f"{name}.csv").write_text(text)
+    (tmp_path / "text.nc").write_text("no record")
     monkeypatch.setattr("stridula.studies.task.simulate_many", lambda *args, **kwargs: pytest.fail("it ran"))
     before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     code, out, err = stridula(*SWEEP, *arguments)

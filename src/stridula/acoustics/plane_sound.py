@@ -23,11 +23,12 @@ from .delays import Sampling
 from .free_bodies import chosen, convolved, lacks
 from .listeners import HEIGHT, SPACING, check_in_front, ears, listeners_of
 from .panels import panel_of
-from .recorded_motion import RecordedModes, at_one_rate, recorded_motion
+from .recorded_motion import at_one_rate, recorded_motion
 from .redriven import redriven
 from .resampling import bandwidth_of, ratio_of, resample
 from .responses import line_note
 from .slim_beams import slim_beam
+from .track_motion import TrackMotion, is_driven_otherwise
 from .track_sound import track_sound
 from .travels import travel_note, travel_of
 
@@ -183,12 +184,19 @@ def _of_track(
         # It has been in equilibrium before.
         pressing = pressing.assign(normal_force=pressing["normal_force"] - pressing["normal_force"].isel(time=0))
     places = _axes(track).listeners(seen - [outline.place[0], 0.0, outline.place[1]])
-    silence = (f"{name} is silent", "its forces never change" if starts else "the contact never presses")
-    pressure, time, _, attributes = track_sound(pressing, track, places, baffled, air, sample_rate, silence, name)
-    if attributes["motion"] != RecordedModes.words and any(
-        contact.touched_point and contact.touched_point.body == track for contact in system.contacts
-    ):
-        attributes["notes"] += f"; contacts at a fixed point of {name} do not drive it here"
+    otherwise = is_driven_otherwise(system, track)
+    still = "its forces never change" if starts else "the contact never presses"
+    pressure, time, _, attributes = track_sound(
+        pressing,
+        track,
+        places,
+        baffled,
+        air,
+        sample_rate,
+        (f"{name} is silent", "nothing pushes" if otherwise else still),
+        name,
+        (lambda: TrackMotion(run, system, track)) if otherwise else None,
+    )
     return pressure, time, attributes
 
 

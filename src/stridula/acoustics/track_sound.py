@@ -57,10 +57,12 @@ def track_sound(
     sample_rate: float | None,
     silence: tuple[str, str] = ("silence", "the contact never presses"),
     name: str | None = None,
+    driven: Callable[[], Motion] | None = None,
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
     """Return pressures (listeners, samples), their times, the listeners and attributes; arguments are as in `radiate`.
 
-    `silence` has a name for silence and its cause without a force; `name` is that of the track in its system.
+    `silence` has a name for silence and its cause without a force; `name` is that of the track in its system. `driven`
+    returns its motion if it is not recorded and more than the contacts along it drives it.
 
     Raises
     ------
@@ -69,7 +71,10 @@ def track_sound(
     """
 
     def moved(panel: Panel) -> Motion:
-        found = recorded_modes(run, track, name) or DrivenModes(panel, pressing(run, panel))
+        found: Motion | None = recorded_modes(run, track, name)
+        if found is None and driven is not None:
+            return driven()
+        found = found or DrivenModes(panel, pressing(run, panel))
         check_one_track(run)
         return found
 

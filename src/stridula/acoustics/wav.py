@@ -12,11 +12,12 @@ import xarray as xr
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, choice, positive
-from ..disk import check_writable, read, write
+from ..disk import check_ending, check_writable, read, write
 from ..extras import named_extras
 from .pressures import channels
 from .sample_rates import resampled
 
+ENDINGS = (".wav", ".wave")
 RATES = (44100, 48000, 96000)
 SUBTYPES = ("PCM_24", "FLOAT")
 NORMALISED = "normalised"
@@ -102,10 +103,12 @@ def write_wav(
     Raises
     ------
     ValueError
-        If an argument is out of its range, or the pressure would be clipped at this full scale.
+        If an argument is out of its range, if the pressure would be clipped at this full scale, or if `path` has the
+        ending of another format, such as ``.mp3``.
     OSError
         If the file cannot be written.
     """
+    check_ending("path", path, ENDINGS, "WAV file")
     check_writable(path)
     choice("subtype", subtype, SUBTYPES)
     content, written = wav_of(str(path), pressure, sample_rate, full_scale, subtype)

@@ -73,6 +73,10 @@ def sliding_stability(
         ``attrs["equilibrium"]`` is ``sliding``; ``held``: friction holds a contact permanently; ``lifted off``; or
         ``jammed``: it neither slides nor opens, and there are no modes unless `status` is given. With `status` it is
         the kind that would replace these statuses if they cannot persist.
+        ``attrs["equilibria"]`` is the number of equilibria: ``one``, ``several``, of which one is in the result, or
+        ``none``; ``at least one`` or ``none found`` where many contacts do not allow to try all their statuses; empty
+        with `status`, as nothing is searched. ``attrs["violated"]`` has, in words, the inequalities that given statuses
+        violate, such as a contact that pulls or one that is open below the surface; else it is empty.
         ``attrs["round_off"]`` is the growth rate [1/s] up to which a mode does not count as unstable.
 
     Raises
@@ -184,7 +188,9 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
             _, values, attributes = data[name]
             both = _along_tangents(np.atleast_1d(values), lateral.get(name, 0.0), structure.ways)
             data[name] = (("contact", "tangent"), both, attributes) if several else ("tangent", both[0], attributes)
-    return xr.Dataset(data, coordinates, {"equilibrium": equilibrium.kind, "round_off": round_off(structure)})
+    attributes = {"equilibrium": equilibrium.kind, "equilibria": equilibrium.found}
+    attributes |= {"violated": "; ".join(equilibrium.violated), "round_off": round_off(structure)}
+    return xr.Dataset(data, coordinates, attributes)
 
 
 def _along_tangents(along: Array, across: Array | float, ways: Array) -> Array:

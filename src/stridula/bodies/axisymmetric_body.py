@@ -12,7 +12,7 @@ from weakref import WeakSet
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, at_least, brief, choice, finite, instance, listed
+from ..checks import ArgumentError, at_least, brief, choice, finite, instance, listed, within_a_turn
 from ..declared import CountFrom0, Each, Frequency, Number, Own, check_declared
 from ..histories import HISTORIES, Constant, History
 from ..ordinary import NotOrdinary, of_ordinary_size
@@ -354,12 +354,18 @@ class AxisymmetricBody(HasCard):
         history : Constant, Ramp, Harmonic or Sampled, optional
             Factor on that velocity over time.
         """
-        point = _triple("position", position, POSITION)
+        point = _point("position", position)
         return CircularPath(self, point, velocity, Constant() if history is None else history)
 
     def at(self, position: Any) -> BodyPoint:
-        """Return the point at a distance r from the axis [m], an angle theta [rad] and a place z along it [m]."""
-        return BodyPoint(self, _triple("position", position, POSITION))
+        """Return the point at a distance r from the axis [m], an angle theta [rad] and a place z along it [m].
+
+        Raises
+        ------
+        ValueError
+            If it is not in the body, or if theta is not from -2 pi to 2 pi.
+        """
+        return BodyPoint(self, _point("position", position))
 
     def check_position(self, position: Any) -> None:
         """Raise ValueError if `position`, (r, theta, z) in metres and radians, is not in the body."""
@@ -583,6 +589,12 @@ def _solid(name: str, given: Any) -> Material:
         allowed = f"have a Poisson's ratio from {LEAST_POISSON} to {MOST_POISSON} in a solid"
         raise ArgumentError(name, allowed, material, got=material.poisson)
     return material
+
+
+def _point(name: str, values: Any) -> tuple[float, float, float]:
+    """Return (r, theta, z) with an angle of at most a turn."""
+    r, theta, z = _triple(name, values, POSITION)
+    return r, within_a_turn(f"{name}[1]", theta), z
 
 
 def _places(given: Any) -> tuple[tuple[float, float], ...]:

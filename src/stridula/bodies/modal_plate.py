@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, at_least, at_most, count, finite, instance, positive, within
+from ..checks import ArgumentError, at_least, at_most, count, finite, instance, positive, within, within_a_turn
 from ..ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
@@ -45,8 +45,7 @@ class Line:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "origin", _pair("origin", self.origin))
-        if abs(finite("direction", self.direction)) > 2.0 * math.pi:
-            raise ArgumentError("direction", "be from -2 pi to 2 pi rad", self.direction)
+        within_a_turn("direction", self.direction)
 
     @property
     def tangent(self) -> tuple[float, float]:

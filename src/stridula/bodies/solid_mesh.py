@@ -16,7 +16,7 @@ import scipy  # its parts are imported on first use
 import scipy.sparse
 
 from ..arrays import Array
-from ..checks import ArgumentError, choice, count, finite, instance, listed, positive
+from ..checks import WHOLE_TURN, ArgumentError, choice, count, finite, instance, listed, positive
 from . import solid_files, solid_shapes
 from .matrix_input import check_finite, numbers
 from .solid_elements import check_elements
@@ -258,9 +258,19 @@ class SolidMesh:
         offset : sequence of float, length 3, optional
             Shift along x, y and z [m].
         rotation : sequence of float, length 3, optional
-            Rotation vector: components along x, y and z of the axis times the angle [rad]; (0, 0, pi) is upside down.
+            Rotation vector: components along x, y and z of the axis times the angle [rad], at most 2 pi; (0, 0, pi) is
+            upside down.
+
+        Raises
+        ------
+        ValueError
+            If an argument is out of its range.
         """
         shift, turn = (_three(word, those, finite) for word, those in (("offset", offset), ("rotation", rotation)))
+        if (angle := float(np.linalg.norm(turn))) > WHOLE_TURN:
+            raise ArgumentError(
+                "rotation", "be an axis times an angle of at most 2 pi rad", rotation, got=f"{angle:.6g} rad"
+            )
         matrix = scipy.spatial.transform.Rotation.from_rotvec(turn).as_matrix()
         return replace(self, nodes=self.nodes @ matrix.T + np.array(shift))
 

@@ -5,11 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..checks import ArgumentError
-from ..disk import check_writable
+from ..disk import RECORDS, check_ending, check_writable
+
+# Option of a record.
+RECORD = "--out"
 
 
-def check_outputs(out: str | None, plot: str | None, word: str = "--out", figure: str = "--plot") -> None:
+def check_outputs(out: str | None, plot: str | None, word: str = RECORD, figure: str = "--plot") -> None:
     """Raise ValueError or OSError if a file or a figure cannot be written; write nothing.
+
+    A file of the option ``--out`` is a record.
 
     Parameters
     ----------
@@ -20,6 +25,8 @@ def check_outputs(out: str | None, plot: str | None, word: str = "--out", figure
     """
     if out is not None and plot is not None and Path(out).resolve() == Path(plot).resolve():
         raise ArgumentError(figure, f"differ from {word}", plot, got=f"{plot!r} for both")
+    if out is not None and word == RECORD:
+        check_record(out)
     if plot is not None:
         from matplotlib.figure import Figure
 
@@ -29,6 +36,11 @@ def check_outputs(out: str | None, plot: str | None, word: str = "--out", figure
     for path in (out, plot):
         if path is not None:
             check_writable(path)
+
+
+def check_record(out: str) -> None:
+    """Raise ValueError if the file of the option ``--out`` has the ending of another format than a record."""
+    check_ending(RECORD, out, RECORDS, "NetCDF file", "`stridula export` writes tables, --plot figures")
 
 
 def _format(path: str) -> str:

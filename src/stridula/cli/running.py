@@ -20,8 +20,6 @@ from .outputs import check_outputs
 
 # Ends of runs that can be heard.
 WHOLE = ("finished", "off the track")
-# Extensions that are refused for a record.
-OTHER_FORMATS = (".csv", ".mat", ".png", ".pdf", ".svg", ".wav", ".toml")
 
 
 def run_scenario(
@@ -39,10 +37,6 @@ def run_scenario(
         On Ctrl-C, or if the run failed, after the samples recorded so far are written.
     """
     check_outputs(out, plot)
-    if out is not None and Path(out).suffix.lower() in OTHER_FORMATS:
-        raise ArgumentError(
-            "--out", "be a NetCDF file, .nc", out, got=f"{out!r}; `stridula export` writes tables, --plot figures"
-        )
     scenario = load_scenario(name, overrides)
     if wav is not None:
         _check_wav(wav, name, out, plot, scenario)

@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..checks import ArgumentError
-from ..disk import check_writable, write
+from ..disk import check_ending, check_writable, write
 from ..records.files import save as save_file
 from ..scenarios.keys import overridden
 from ..scenarios.load import with_matrices
@@ -24,6 +24,7 @@ from ..studies.points import Range
 from ..studies.sobol import FEWEST, sensitivity
 from .consoles import wide_console
 from .exits import INTERRUPTED, Stopped
+from .outputs import check_record
 from .sweeping import points_done
 
 
@@ -37,6 +38,7 @@ def calibrate_scenario(
 ) -> bool:
     """Search for parameters that meet targets, print and write them, and return whether all targets are met."""
     if out is not None:
+        check_ending("--out", out, (".toml",), "scenario")
         check_writable(out)
     aimed = targets_of(targets)
     best: dict[str, Any] = {}
@@ -125,6 +127,7 @@ def sensitivity_of_scenario(
 ) -> str:
     """Print Sobol indices and probabilities of the regimes, write them, and return the closing lines."""
     if out is not None:
+        check_record(out)
         check_writable(out)
     title = str(read_tables(name).get("title", name))
     with points_done(title) as watch:

@@ -12,9 +12,15 @@ from ..checks import ArgumentError
 from ..declared import check_declared
 from .linearised import Linearised
 
+# Step of a central difference over the speed.
+STEP = 1e-5
+
 
 class FrictionLaw(ABC):
     """Base class of friction laws: a frozen dataclass with a range beside each field, and properties for the march.
+
+    The march computes one of the laws of the package, by `kernel_code` and `parameters`; a law from outside whose other
+    methods do not agree with that is refused when a system is simulated or linearised.
 
     Attributes
     ----------
@@ -83,8 +89,11 @@ class FrictionLaw(ABC):
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]."""
 
     def linearised_at(self, velocity: float) -> Linearised:
-        """Return the law linearised about steady sliding at `velocity` [m/s], not 0; constant by default."""
-        return Linearised()
+        """Return the law linearised about steady sliding at `velocity` [m/s], not 0; by differences by default."""
+        if not self.depends_on_speed:
+            return Linearised()
+        low, high = np.asarray(self.coefficient_at(abs(velocity) * np.array([1.0 - STEP, 1.0 + STEP])), dtype=float)
+        return Linearised(slope=float(high - low) / (2.0 * STEP * abs(velocity)))
 
     def linearised_across(self, velocity: float) -> Linearised:
         """Return the law linearised across steady sliding at `velocity` [m/s], not 0: by default the force turns."""

@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Array, in_space
 from ..bodies import BodyPoint, CircularPath, ModalBeam, ModalPlate, Track, is_track
 from ..bodies.turning import Turning
-from ..checks import ArgumentError, brief, instance, within
+from ..checks import ArgumentError, brief, instance, within, within_a_turn
 from ..declared import Angle, Distance, Each, Number, OneOrEach, Position, check_declared
 from .coulomb import Coulomb
 from .friction_law import FrictionLaw
@@ -108,8 +108,7 @@ class PointContact:
             )
         if not isinstance(self.friction, FrictionLaw):
             instance("friction", self.friction, LAWS)
-        if abs(self.inclination) > 2.0 * math.pi:
-            raise ArgumentError("inclination", "be from -2 pi to 2 pi rad", self.inclination)
+        within_a_turn("inclination", self.inclination)
         for word in ("name", "surface"):
             instance(word, getattr(self, word), str)
         if self.area and not self.surface:

@@ -89,7 +89,8 @@ def simulate(
         for surfaces with known areas. With ``"all"`` every point is a contact of the record.
     motion_rate : float, optional
         Rate at which the motion of bodies is recorded, from which `radiate` computes their sound [Hz]; the nearest rate
-        at which an interval is a whole number of samples. The motion of all bodies, unless `probes` have a ModalMotion.
+        at which an interval is a whole number of samples. At least ``1 / duration``, as the run is rounded to whole
+        intervals. The motion of all bodies, unless `probes` have a ModalMotion.
         If left out, only such probes, at the sample rate.
     progress : bool, optional
         Whether to show a bar on standard error with the simulated time, the speed and the time left, in terminals,
@@ -199,6 +200,9 @@ class Asked:
         if self.motion_rate is None:
             return timing
         every = _intervals("motion_rate", self.motion_rate, timing)
+        if every > timing.samples:
+            least = at_least(1.0 / (timing.samples * timing.interval))
+            raise ArgumentError("motion_rate", f"be at least 1 / duration, {least} Hz", self.motion_rate)
         return replace(timing, motion_every=every, samples=every * max(1, round(timing.samples / every)))
 
     @of_ordinary_size("system")

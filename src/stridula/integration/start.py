@@ -9,7 +9,7 @@ import numpy as np
 from .._kernels import layout as at
 from .._kernels.bristles import bristles_ratio, next_bristles_of_run
 from .._kernels.contact import SEPARATED, SLIDING, STICKING
-from .._kernels.friction import set_valued, sliding_ratio, state_ratio
+from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
 from .._kernels.pressing import stored_in_one
 from ..arrays import Array
 from ..checks import ArgumentError
@@ -149,7 +149,9 @@ class _Start:
             elif not set_valued(law):
                 # Signed by the sense of slip, as bristles may be bent either way.
                 sense = -1.0 if share == -1.0 else 1.0
-                found = state_ratio(law, laws, number, carried[number, at.FRICTION_STATE], sense * whole, self.step)
+                state = carried[number, at.FRICTION_STATE]
+                middle = 0.5 * (state + next_state(law, laws, number, state, whole, self.step))
+                found = state_ratio(law, laws, number, middle, sense * whole)
                 ratios[i] = found * (sense * share if whole else float(number == i))
             elif whole:
                 ratios[i] = share * sliding_ratio(law, laws, number, whole)

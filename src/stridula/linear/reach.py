@@ -132,7 +132,7 @@ def _forces(
     """Return the normal forces of all contacts, and the tangential forces of sticking ones, in a mode [N]."""
     states = motion.from_velocity @ (exponent * shape) / (exponent - motion.state)
     moving = motion.mass * exponent**2 * shape + exponent * (motion.damping @ shape) + motion.stiffness @ shape
-    forces = np.linalg.lstsq(motion.pushes.T, moving + motion.by_state @ states, rcond=None)[0]
+    forces = motion.spread @ np.linalg.lstsq(motion.pushes.T, moving + motion.by_state @ states, rcond=None)[0]
     normal, stuck = np.zeros((2, len(at.status)), dtype=complex)
     closed = [k for k, status in enumerate(at.status) if status != SEPARATED]
     held = [k for k in closed if at.status[k] == STICKING]

@@ -16,7 +16,8 @@ from ..arrays import Array
 from ..checks import ArgumentError
 from ..contact.linearised import Linearised
 from ..contact.stiffness import slopes_at
-from .equilibrium import Equilibrium, held_rows, rigid_rows
+from .balance import held_rows, rank, rigid_rows
+from .equilibrium import Equilibrium
 from .structure import SLIDING, STICKING, Structure
 
 # Relative imaginary part of a real exponent due to rounding.
@@ -41,7 +42,9 @@ class Vibration:
     stiffness, damping : ndarray, shape (modes, modes)
         Including the terms of friction and of the shift of contact points.
     held, pushes : ndarray, shape (constraints, modes)
-        Constraints of contacts, and modal forces of their multipliers.
+        Independent constraints of contacts, and modal forces of their multipliers.
+    spread : ndarray, shape (rows, constraints)
+        Forces on the rigid rows of `held_rows` by unit multipliers.
     by_state, from_velocity, from_displacement : ndarray, shape (modes, states), (states, modes) twice
         Modal forces of states, and rates of states by motion.
     state : ndarray, shape (states,)
@@ -57,6 +60,7 @@ class Vibration:
     damping: Array
     held: Array
     pushes: Array
+    spread: Array
     by_state: Array
     from_velocity: Array
     from_displacement: Array
@@ -101,10 +105,17 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
             stiffness += slope * np.outer(pushes[row], held[row])
             damping += rate * np.outer(pushes[row], held[row])
     rigid = rigid_rows(structure, closed, len(held))
-    held, pushes = held[rigid], pushes[rigid]
+    spread = _independent(held[rigid])
+    held, pushes = spread.T @ held[rigid], spread.T @ pushes[rigid]
     by_state, from_velocity, state = _states(kept := [one for one in answers if one.near.state_by_state], structure)
     moved, owners = (from_velocity, from_velocity @ passing), tuple(one.owner for one in kept)
-    return Vibration(structure.mass, stiffness, damping, held, pushes, by_state, *moved, state, owners, free)
+    return Vibration(structure.mass, stiffness, damping, held, pushes, spread, by_state, *moved, state, owners, free)
+
+
+def _independent(rows: Array) -> Array:
+    """Return an orthonormal basis of combinations of rows that are independent, the rows themselves if they are."""
+    size = rank(rows)
+    return np.eye(len(rows)) if size == len(rows) else np.linalg.svd(rows, full_matrices=False)[0][:, :size]
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array
+from ..checks import ArgumentError
 from ..ordinary import of_ordinary_size
 from ..records.probes import Probe
 from ..system import System
@@ -15,6 +16,7 @@ from .contact_rows import ContactRows, contact_rows
 from .coordinates import Coordinates, are_uncoupled, pairs_of
 from .loads import Load, loads_of
 from .motion import Prescribed, Signal, motion_of, prescribed_of
+from .own_laws import check_law
 from .probe_rows import ProbeRows, probe_rows
 from .turning_modes import TurningModes, turning_modes
 
@@ -118,6 +120,7 @@ def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
 
 def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:
     """Return a system as flat arrays without probes, with the coordinates and loads for those of probes."""
+    _check_laws(system)
     coordinates = Coordinates(system)
     stiffness, dissipation = coordinates.matrices
     modes = [coordinates.modes(body) for body in coordinates.order]
@@ -156,6 +159,16 @@ def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:
         turning=turning,
     )
     return flat, coordinates, loads
+
+
+def _check_laws(system: System) -> None:
+    """Raise ValueError if the friction law of a contact is not the one that is marched."""
+    first = {id(contact.friction): number for number, contact in reversed(list(enumerate(system.contacts)))}
+    for number in first.values():
+        try:
+            check_law(system.contacts[number].friction)
+        except ArgumentError as error:
+            raise error.inside(system.contact_names[number]) from None
 
 
 def with_travel(arrays: Assembly, system: System, travel: float) -> Assembly:

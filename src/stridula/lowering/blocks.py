@@ -12,9 +12,9 @@ from .._kernels import layout as at
 from ..arrays import Array
 from ..bodies.paths import Path
 from ..checks import ArgumentError, at_most
-from ..contact import FrictionLaw
 from .assembly import Assembly
 from .contact_rows import ContactRows
+from .own_laws import law_of_march
 from .schemes import Scheme
 from .stepping import Stepping
 
@@ -215,7 +215,7 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
             constants[i, at.LOW : at.AT_REST] = (*path.ends, *angles)
         if one.circle is not None:
             constants[i, [at.ALONG, at.ALONG_PHASE]] = one.rate, -one.rate * one.contact.at
-        codes[i], laws[i] = _law(one.contact.friction)
+        codes[i], laws[i] = law_of_march(one.contact.friction)
         constants[i, at.AT_REST] = laws[i, 0]
         if one.yields is not None:
             constants[i, at.YIELD_STIFFNESS : at.YIELD_REACH] = one.yields.numbers
@@ -254,13 +254,6 @@ def _path_modes(one: ContactRows) -> PathModes | None:
         return None
     track: Any = one.contact.track
     return PathModes(track.path(), slice(*one.bending), slice(*one.axial))
-
-
-def _law(law: FrictionLaw) -> tuple[int, Array]:
-    """Return the code of a friction law and its parameters, with the state of a new contact last."""
-    found, own = np.zeros(at.LAW_PARAMETERS), list(law.parameters().values())
-    found[: len(own)], found[-1] = own, law.state_at_landing
-    return getattr(at, law.kernel_code), found
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from ..arrays import Array
 from ..cards import eye_of
-from ..checks import STATUS_WORDS, ArgumentError, finite
+from ..checks import STATUS_WORDS, ArgumentError, within_a_turn
 from ..system import System
 from .colours import STATUS_COLOURS
 from .motion import ModalMotion
@@ -209,10 +209,10 @@ class Scene(Stage):
 
 
 def checked_view(view: Any) -> tuple[float, float]:
-    """Return elevation and azimuth as two finite numbers."""
+    """Return elevation and azimuth, each of at most a turn."""
     if not isinstance(view, (tuple, list)) or len(view) != 2:
         raise ArgumentError("view", "be an elevation and an azimuth [rad]", view)
-    return finite("view[0]", view[0]), finite("view[1]", view[1])
+    return within_a_turn("view[0]", view[0]), within_a_turn("view[1]", view[1])
 
 
 def _axes_in_space(figure: Figure, room: tuple[float, float, float, float]) -> Any:

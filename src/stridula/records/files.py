@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from ..checks import ArgumentError, in_one_line, instance
-from ..disk import check_writable, named, read, write
+from ..disk import RECORDS, check_ending, check_writable, named, read, write
 from ..extras import named_extras, require
 
 MAGIC = b"\x89HDF\r\n\x1a\n"
@@ -30,12 +30,16 @@ def save(run: xr.Dataset, path: str | Path) -> None:
 
     Raises
     ------
+    ValueError
+        If `run` is no record or NetCDF cannot store it, or if `path` has the ending of another format, such as
+        ``.csv``: `export` writes tables.
     OSError
         If the file cannot be written; no partial file is left.
     ImportError
         If the extra ``files`` is not installed.
     """
     instance("run", run, xr.Dataset)
+    check_ending("path", path, RECORDS, "NetCDF file", "export writes tables, plot figures")
     require("h5py")
     with named_extras():
         from h5netcdf.utils import CompatibilityError

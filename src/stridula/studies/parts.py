@@ -10,7 +10,7 @@ from typing import Any
 import xarray as xr
 
 from ..checks import ArgumentError
-from ..disk import check_writable, one_line, write
+from ..disk import RECORDS, check_ending, check_writable, one_line, write
 from ..records.files import is_record, load, save
 from .task import Outcome
 
@@ -40,6 +40,7 @@ class Parts:
     def __init__(self, out: str | Path, identity: dict[str, str], study: str = "sweep") -> None:
         self.study = study
         self.out, self.folder, self.identity = Path(out), Path(f"{out}.parts"), identity
+        check_ending("out", out, RECORDS, "NetCDF file")
         check_writable(out)
         self.finished = self._finished()
         self._check_folder()

@@ -1,0 +1,444 @@
+"""Balance of forces of a system whose contacts have given statuses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+
+from ..arrays import Array
+from ..checks import ArgumentError
+from ..contact import FrictionLaw
+from ..contact.stiffness import indentation_under, tangent_of
+from .response import Factors, Response
+from .structure import SEPARATED, SLIDING, STICKING, UNMOVED, Structure
+
+# Relative size below which a force or an acceleration is round-off.
+ROUND_OFF = 1e-9
+# Most iterations of the indentation of compliant contacts, and the relative change of forces that is round-off.
+YIELDING, SETTLED = 60, 1e-13
+# Flexibility of rigid contacts that hold the same motion twice, relative to that of the bodies; it vanishes in the
+# iteration, and leaves the forces of which it selects the least.
+SOFT = 1e-8
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Balance of forces.
+
+    Attributes
+    ----------
+    status : sequence of str
+        Status of each contact.
+    sense, ratio : ndarray, shape (contacts,)
+        Sense of sliding, 0 where nothing moves a contact, and unsigned ratio of the forces of sliding contacts [1].
+    normal_force, tangential_force, lateral_force : ndarray, shape (contacts,)
+        Contact forces [N]: compressive, on the track along the slip, and across the tangent of sticking contacts.
+    slip_velocity, slip_acceleration : ndarray, shape (contacts,)
+        Slip velocities [m/s], 0 where unknown, and accelerations of the slip by free rigid motions [m/s²].
+    opening, opening_acceleration : ndarray, shape (contacts,)
+        Distance of the bodies at each contact [m], below zero where they overlap, and its acceleration by free rigid
+        motions [m/s²].
+    place : ndarray, shape (contacts,)
+        Displacements along the tangents [m].
+    determinant : float
+        Sign of the determinant of the equations, 0 if they are singular.
+    displacement : ndarray, shape (modes,)
+        Modal displacements without free rigid motions; empty unless asked for.
+    """
+
+    status: Sequence[str]
+    sense: Array
+    ratio: Array
+    normal_force: Array
+    tangential_force: Array
+    lateral_force: Array
+    slip_velocity: Array
+    slip_acceleration: Array
+    opening: Array
+    opening_acceleration: Array
+    place: Array
+    determinant: float
+    displacement: Array
+
+
+def balance_of(
+    structure: Structure,
+    status: Sequence[str],
+    sense: Array,
+    ratio: Array,
+    anchors: Array,
+    slip: Array,
+    exact: bool = False,
+) -> Balance:
+    """Solve for displacement, accelerations of free rigid motions and contact forces simultaneously.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    status : sequence of str
+        Status of each contact.
+    sense, ratio : ndarray, shape (contacts,)
+        Sense of sliding, and ratio of the forces of sliding contacts [1].
+    anchors : ndarray, shape (contacts,)
+        Displacements along their tangents at which sticking contacts are held [m].
+    slip : ndarray, shape (contacts,)
+        Slip velocities [m/s], only passed on.
+    exact : bool, optional
+        Whether to compute the modal displacement, and to remove the rounding of soft supports.
+    """
+    count, share = len(status), sense * ratio
+    load = structure.load - structure.damping @ structure.following(status)
+    equations, right = _tangent_equations(structure, status, share, load, anchors)
+    displacement = np.zeros(0)
+    if exact:
+        displacement, rigid, forces = equations.exact(load, *right)
+        places = equations.response.rows @ displacement
+    else:
+        forces, rigid, places = equations.reduced(equations.response.to(load), *right)
+    closed, stuck = equations.closed, equations.stuck
+    normal, tangential, lateral = np.zeros((3, count))
+    normal[closed] = forces[: len(closed)]
+    tangential[closed] = (share * normal)[closed]
+    tangential[stuck] = forces[len(closed) : len(closed) + len(stuck)]
+    lateral[equations.lateral] = forces[len(closed) + len(stuck) :]
+    gains = equations.response.felt @ rigid
+    return Balance(
+        status,
+        sense,
+        ratio,
+        normal,
+        tangential,
+        lateral,
+        slip,
+        gains[count : 2 * count],
+        structure.gaps + places[:count],
+        gains[:count],
+        places[count : 2 * count],
+        equations.determinant,
+        displacement,
+    )
+
+
+def at_statuses(
+    structure: Structure, velocity: Array, status: Sequence[str], exact: bool = False
+) -> tuple[Balance, Balance]:
+    """Return the balance of forces without and with friction of sliding contacts.
+
+    Where the slip is neither prescribed nor given, its sense is that of the motion without friction. Sticking contacts
+    are held where they would rest without friction.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    velocity : ndarray, shape (contacts,)
+        Slip velocity [m/s] of each contact where it is not prescribed; 0 where none is given.
+    status : sequence of str
+        Status of each contact.
+    exact : bool, optional
+        As for `balance_of`, for the balance with friction.
+    """
+    nothing = np.zeros(len(status))
+    anchors = nothing
+    if STICKING in status:
+        loose = [SLIDING if one == STICKING else one for one in status]
+        anchors = balance_of(structure, loose, nothing, nothing, nothing, nothing, exact).place
+    slip = _slip_velocities(structure, velocity, status)
+    plain = balance_of(structure, status, np.sign(slip), nothing, anchors, slip)
+    least = ROUND_OFF * largest_acceleration(structure)
+    moved = np.where(np.abs(plain.slip_acceleration) > least, plain.slip_acceleration, 0.0)
+    slides = np.array([one == SLIDING for one in status])
+    sense = slides * np.where(slip != 0.0, np.sign(slip), np.sign(moved))
+    ratio = nothing.copy()
+    for number, contact in enumerate(structure.system.contacts):
+        if status[number] == SLIDING:
+            speed = abs(float(slip[number])) or abs(float(velocity[number]))
+            ratio[number] = _ratio_at(speed, contact.friction, structure.system.contact_names[number])
+    return plain, balance_of(structure, status, sense, ratio, anchors, slip, exact)
+
+
+def _slip_velocities(structure: Structure, velocity: Array, status: Sequence[str]) -> Array:
+    """Return the slip velocities [m/s]: prescribed ones, else given ones of contacts that are not held otherwise."""
+    slip = np.where([one == SLIDING for one in status], structure.prescribed(status), 0.0)
+    for k, given in enumerate(velocity):
+        if given and not slip[k] and status[k] == SLIDING and not is_held(structure, status, k):
+            slip[k] = given
+    return slip
+
+
+def _ratio_at(speed: float, law: FrictionLaw, contact: str) -> float:
+    """Return the ratio of a law in sliding at a speed [m/s], which must be known if the law depends on it."""
+    if law.depends_on_speed and not speed:
+        raise ArgumentError(
+            "velocity",
+            f"be given for {contact}: its {law.law} friction depends on the slip speed, which nothing prescribes",
+        )
+    return float(law.coefficient_at(speed or 1.0))
+
+
+def largest_acceleration(structure: Structure) -> float:
+    """Return an upper bound of the acceleration of a contact by the loads [m/s²]."""
+
+    def find() -> float:
+        lines = structure.lines
+        rows = np.array([line.tangent for line in lines] + [line.normal for line in lines])
+        sizes = np.linalg.norm(rows * structure.mass, axis=1)
+        return float(sizes.max() * np.linalg.norm(structure.load * structure.mass))
+
+    return structure.once("acceleration", find)
+
+
+def largest_force(structure: Structure) -> float:
+    """Return an upper bound of the force of the loads on a contact [N]."""
+
+    def find() -> float:
+        rows = np.array([line.normal for line in structure.lines])
+        return float(np.linalg.norm(structure.load) / np.linalg.norm(rows, axis=1).min())
+
+    return structure.once("force", find)
+
+
+def _tangent_equations(
+    structure: Structure, status: Sequence[str], share: Array, load: Array, anchors: Array
+) -> tuple[Equations, tuple[Array, Array]]:
+    """Return the equations under a load, and the values of their constraints; iterated for compliant contacts."""
+    rigid, soft = np.array([structure.is_rigid(k) for k in range(len(status))]), softness(structure, status)
+    response = structure.once("response", lambda: Response(structure))
+    moved = response.to(load)
+    normal = np.where(rigid, 0.0, largest_force(structure) or 1.0)
+    before = np.zeros(0)
+    for _ in range(1 if rigid.all() and not soft else YIELDING):
+        give, beyond = yielding_at(structure, normal)
+        give[rigid], beyond[rigid] = soft, -soft * normal[rigid]
+        equations = Equations(structure, status, share, give, soft)
+        closed = equations.closed
+        stays = _anchored(equations, anchors)
+        if before.size:
+            stays = stays - soft * before[len(closed) :]
+        right = -structure.gaps[closed] - beyond[closed], stays
+        forces = equations.reduced(moved, *right)[0]
+        normal[closed] = forces[: len(closed)]
+        change = np.abs(forces - before).max(initial=0.0) if before.size else np.inf
+        before = forces
+        if change <= SETTLED * np.abs(forces).max(initial=0.0) or not np.isfinite(forces).all():
+            break
+    return equations, right
+
+
+def _anchored(equations: Equations, anchors: Array) -> Array:
+    """Return the values of the constraints of sticking contacts along and across their tangents."""
+    return np.concatenate([anchors[equations.stuck], np.zeros(len(equations.lateral))])
+
+
+class Equations:
+    """Balance of forces and constraints of contacts as equations for displacement, accelerations and forces.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    status : sequence of str
+        Status of each contact.
+    share : ndarray, shape (contacts,)
+        Signed tangential over normal force of sliding contacts [1].
+    give : ndarray, shape (contacts,), optional
+        Flexibility of each contact along its normal [m/N].
+    soft : float, optional
+        Flexibility of sticking contacts along and across their tangents [m/N].
+    """
+
+    def __init__(
+        self, structure: Structure, status: Sequence[str], share: Array, give: Array | None = None, soft: float = 0.0
+    ) -> None:
+        self.structure, count = structure, len(status)
+        self.response: Response = structure.once("response", lambda: Response(structure))
+        self.closed = [k for k, one in enumerate(status) if one != SEPARATED]
+        self.stuck = [k for k in self.closed if status[k] == STICKING]
+        self.lateral = held_across(structure, self.stuck)
+        tangents = [*(count + k for k in self.stuck), *(2 * count + k for k in self.lateral)]
+        self.held, sliding = [*self.closed, *tangents], [status[k] == SLIDING for k in self.closed]
+        self._share = np.where(sliding, share[self.closed], 0.0)
+        self._tangents = [count + k for k in self.closed]
+        # The force of a sticking contact is that on the track, against the displacement.
+        self.give = np.full(len(self.held), -soft)
+        self.give[: len(self.closed)] = 0.0 if give is None else give[self.closed]
+        self.free, self._kept = self._split()
+        self._moved = self._pushed(self.response.compliance)
+        self._pulled = self._pushed(self.response.pull)
+        corner = -self._kept.T @ self.response.opposed @ self._kept
+        upper = [self._moved[self.held] + np.diag(self.give), self.response.moved[self.held] @ self._kept]
+        matrix = np.vstack([np.hstack(upper), np.hstack([self._kept.T @ self._pulled, corner])])
+        rows = np.abs(matrix).max(axis=1, initial=0.0)
+        self._rows = np.where(rows > 0.0, rows, 1.0)[:, None]
+        columns = np.abs(matrix / self._rows).max(axis=0, initial=0.0)
+        self._columns = np.where(columns > 0.0, columns, 1.0)
+        self._factors = Factors(matrix / self._rows / self._columns)
+        self.determinant = self._factors.sign
+
+    def _pushed(self, along: Array) -> Array:
+        """Return the columns of the response to unit forces of the constraints, from those along rows."""
+        slides = along[:, self.closed] - along[:, self._tangents] * self._share
+        return np.hstack([slides, -along[:, self.held[len(self.closed) :]]])
+
+    def _split(self) -> tuple[Array, Array]:
+        """Return the rigid motions that contacts leave free and that they hold, orthonormal, (rigid, motions)."""
+        count = self.structure.rigid.shape[1]
+        if not count or not self.held:
+            return np.eye(count), np.zeros((count, 0))
+        sizes = np.linalg.norm(self.response.rows[self.held], axis=1, keepdims=True)
+        felt = self.response.felt[self.held] / np.where(sizes > 0.0, sizes, 1.0)
+        felt[np.abs(felt) < UNMOVED] = 0.0
+        free = scipy.linalg.null_space(felt, rcond=UNMOVED)
+        return free, scipy.linalg.null_space(free.T) if free.shape[1] else np.eye(count)
+
+    def is_monotone(self) -> bool:
+        """Return whether changes of contact forces that leave held rigid motions in balance do positive work."""
+        null = scipy.linalg.null_space(self._kept.T @ self._pulled) if self._kept.size else np.eye(len(self.held))
+        if self._kept.size and np.abs(null.T @ self.response.moved[self.held] @ self._kept).max(initial=0.0) > 0.0:
+            # Friction also turns held rigid motions: the spaces of forces and of motions differ.
+            same = scipy.linalg.null_space((self.response.moved[self.held] @ self._kept).T)
+            if null.shape != same.shape or np.linalg.norm(null - same @ (same.T @ null)) > UNMOVED:
+                return False
+        work = null.T @ (self._moved[self.held] + np.diag(self.give)) @ null
+        return bool(np.linalg.eigvalsh(0.5 * (work + work.T)).min(initial=1.0) > 0.0)
+
+    def _forces(self, displacements: Array, accelerations: Array, values: Array) -> tuple[Array, Array]:
+        """Return forces and places of held rigid motions, for displacements along rows and accelerations by loads."""
+        right = np.concatenate([values - displacements[self.held], -self._kept.T @ accelerations])
+        found = self._factors.solved(right / self._rows[:, 0]) / self._columns
+        return found[: len(self.held)], self._kept @ found[len(self.held) :]
+
+    def reduced(self, loaded: tuple[Array, Array], closed: Array, stuck: Array) -> tuple[Array, Array, Array]:
+        """Return forces, accelerations of rigid motions, and displacements along the rows of all contacts.
+
+        Parameters
+        ----------
+        loaded : tuple of ndarray
+            Response to the load.
+        closed, stuck : ndarray
+            Values of the constraints.
+        """
+        moved = self.response.rows @ loaded[0]
+        forces, places = self._forces(moved, loaded[1], np.concatenate([closed, stuck]))
+        gains = loaded[1] + self._pulled @ forces - self.response.opposed @ places
+        return forces, self.free @ (self.free.T @ gains), moved + self._moved @ forces + self.response.moved @ places
+
+    def exact(self, load: Array, closed: Array, stuck: Array) -> tuple[Array, Array, Array]:
+        """Return displacement, accelerations of rigid motions and forces, without the rounding of soft supports.
+
+        Parameters
+        ----------
+        load : ndarray, shape (modes,)
+            Modal forces.
+        closed, stuck : ndarray
+            Values of the constraints.
+        """
+        response, stiffness = self.response, self.structure.stiffness
+        free = self.structure.rigid @ self.free
+        held, pushes = response.rows[self.held], self._pushed(response.rows.T)
+        values = np.concatenate([closed, stuck])
+        displacement, rigid, forces = np.zeros(len(load)), np.zeros(len(self.free)), np.zeros(len(values))
+        # The second pass solves for the rounding of the first.
+        for _ in range(2):
+            left = load + pushes @ forces - stiffness @ displacement - self.structure.rigid @ rigid
+            missed = values - held @ displacement - self.give * forces
+            moved, gains = response.to(left)
+            pushed, places = self._forces(response.rows @ moved, gains, missed)
+            moved, gains = response.to(left + pushes @ pushed - stiffness @ (self.structure.rigid @ places))
+            displacement = displacement + moved + self.structure.rigid @ places
+            displacement = displacement - free @ (free.T @ displacement)
+            rigid = rigid + self.free @ (self.free.T @ gains)
+            forces = forces + pushed
+        return displacement, rigid, forces
+
+
+def yielding_at(structure: Structure, normal: Array) -> tuple[Array, Array]:
+    """Return slope and intercept of the indentation of contacts over the force, about normal forces, (contacts,)."""
+    give, beyond = np.zeros((2, len(normal)))
+    for k, contact in enumerate(structure.system.contacts):
+        if contact.yields is not None:
+            least = ROUND_OFF * (largest_force(structure) or 1.0)
+            indented = indentation_under(contact.yields, max(float(normal[k]), least))
+            give[k], beyond[k] = tangent_of(contact.yields, indented)
+    return give, beyond
+
+
+def held_rows(structure: Structure, status: Sequence[str], share: Array) -> tuple[Array, Array, list[int], list[int]]:
+    """Return the constraints of closed contacts and the action of their forces.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    status : sequence of str
+        Status of each contact.
+    share : ndarray, shape (contacts,)
+        Signed tangential over normal force of sliding contacts [1].
+
+    Returns
+    -------
+    held, pushes : ndarray, shape (held, modes)
+        Constraints of closed contacts along their normals, then of sticking ones along their tangents, then across them
+        in space; modal forces of unit forces of each constraint.
+    closed, stuck : list of int
+        Numbers of the contacts of both kinds of rows.
+    """
+    closed = [k for k, one in enumerate(status) if one != SEPARATED]
+    stuck = [k for k in closed if status[k] == STICKING]
+    lines, size = structure.lines, (-1, structure.mode_count)
+    lateral = [lines[k].across for k in held_across(structure, stuck)]
+    tangents = [*(lines[k].tangent for k in stuck), *lateral]
+    held = np.array([*(lines[k].normal for k in closed), *tangents]).reshape(size)
+    slides = [share[k] if status[k] == SLIDING else 0.0 for k in closed]
+    normals = [lines[k].normal - part * lines[k].tangent for k, part in zip(closed, slides, strict=True)]
+    return held, np.array([*normals, *(-row for row in tangents)]).reshape(size), closed, stuck
+
+
+def rigid_rows(structure: Structure, closed: Sequence[int], count: int) -> list[int]:
+    """Return the rows of `held_rows`, `count` in all, that are rigid: all but the normals of compliant contacts."""
+    return [row for row in range(count) if row >= len(closed) or structure.is_rigid(closed[row])]
+
+
+def held_across(structure: Structure, stuck: Sequence[int]) -> list[int]:
+    """Return the sticking contacts that are also held across their tangent: those in space that can move so."""
+    return [k for k in stuck if np.abs(structure.lines[k].across).any()]
+
+
+def is_held(structure: Structure, status: Sequence[str], contact: int) -> bool:
+    """Return whether the constraints of other contacts also keep a contact from slipping."""
+    held, _, closed, _ = held_rows(structure, status, np.zeros(len(status)))
+    held = held[rigid_rows(structure, closed, len(held))]
+    tangent = structure.lines[contact].tangent
+    return not tangent.any() or rank(np.vstack([held, tangent])) == rank(held)
+
+
+def rank(rows: Array) -> int:
+    """Return the number of linearly independent rows; each row counts as much as the others."""
+    if not len(rows):
+        return 0
+    sizes = np.linalg.norm(rows, axis=1, keepdims=True)
+    if len(rows) == 1:
+        return int(sizes.any())
+    found = np.linalg.svd(rows / np.where(sizes > 0.0, sizes, 1.0), compute_uv=False)
+    return int(np.sum(found >= UNMOVED))
+
+
+def softness(structure: Structure, status: Sequence[str]) -> float:
+    """Return the flexibility for rigid contacts, 0 unless some hold the same motion twice if all are closed [m/N]."""
+    stuck = tuple(k for k, one in enumerate(status) if one == STICKING)
+    return structure.once(("softness", *stuck), lambda: _softness(structure, stuck))
+
+
+def _softness(structure: Structure, stuck: Sequence[int]) -> float:
+    status = [STICKING if k in stuck else SLIDING for k in range(len(structure.lines))]
+    held, _, closed, _ = held_rows(structure, status, np.zeros(len(status)))
+    held = held[rigid_rows(structure, closed, len(held))]
+    if rank(held) == len(held):
+        return 0.0
+    response: Response = structure.once("response", lambda: Response(structure))
+    stretch, moves = np.diag(response.compliance).max(initial=0.0), np.abs(response.felt).max(initial=0.0)
+    return SOFT * float(stretch) if stretch > ROUND_OFF**2 * moves else float(moves)

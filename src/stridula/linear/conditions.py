@@ -1,0 +1,167 @@
+"""Inequalities of an equilibrium: forces press, open contacts have a gap, sliding goes on, friction can hold."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+
+import numpy as np
+import scipy.linalg
+
+from ..arrays import Array
+from .balance import ROUND_OFF, Balance, held_rows, is_held, largest_acceleration, largest_force, rank, rigid_rows
+from .response import Response
+from .structure import SEPARATED, SLIDING, STICKING, UNMOVED, Structure
+
+# Rounding of gaps relative to the displacements by the loads alone.
+ROUNDING = 1e-14
+# Largest number of contacts with which all minors are checked.
+MOST_CONTACTS = 10
+
+
+def margins_of(structure: Structure, at: Balance) -> Array:
+    """Return the force of each closed contact and the gap of each open one, relative, below zero where violated.
+
+    A contact that opens by a free rigid motion has a gap in any case, one that such a motion closes has none.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    at : Balance
+        Balance of forces.
+    """
+    force = max(float(np.abs(at.normal_force).max()), largest_force(structure)) or 1.0
+    length, free = _length(structure, at), largest_acceleration(structure) or 1.0
+    gains = at.opening_acceleration / free
+    gaps = np.where(np.abs(gains) > ROUND_OFF, gains, at.opening / length)
+    closed = np.array([one != SEPARATED for one in at.status])
+    return np.where(closed, at.normal_force / force, gaps) + ROUND_OFF
+
+
+def _length(structure: Structure, at: Balance) -> float:
+    """Return the size of the openings of contacts [m], by which their rounding is judged."""
+    largest = float(np.abs(np.concatenate([at.opening, at.opening - structure.gaps, structure.gaps])).max())
+    alone = structure.once("largest", lambda: _displacement_alone(structure))
+    return max(largest, ROUNDING / ROUND_OFF * alone) or 1.0
+
+
+def _displacement_alone(structure: Structure) -> float:
+    """Return the largest opening of a contact by the loads if no contact pushes [m]."""
+    response = structure.once("response", lambda: Response(structure))
+    return float(np.abs(response.rows[: len(structure.lines)] @ response.to(structure.load)[0]).max(initial=0.0))
+
+
+def stopping(structure: Structure, at: Balance) -> int | None:
+    """Return the first sliding contact that friction stops, None if all slide on.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    at : Balance
+        Balance of forces.
+    """
+    least = ROUND_OFF * largest_acceleration(structure)
+    for k, status in enumerate(at.status):
+        if status != SLIDING or not at.ratio[k] > 0.0:
+            continue
+        gains = at.slip_acceleration[k] * at.sense[k]
+        stops = gains < -least if at.slip_velocity[k] else gains <= least
+        if stops and not is_held(structure, at.status, k):
+            return k
+    return None
+
+
+def broken(structure: Structure, at: Balance) -> list[str]:
+    """Return each inequality that a balance of forces violates, in words.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    at : Balance
+        Balance of forces.
+    """
+    names, words = structure.system.contact_names, []
+    if not np.isfinite(at.normal_force).all():
+        return ["no forces balance"]
+    margins, length = margins_of(structure, at), ROUND_OFF * _length(structure, at)
+    for k in np.flatnonzero(~(margins >= 0.0)).tolist():
+        if at.status[k] != SEPARATED:
+            words.append(f"{names[k]} pulls with {-float(at.normal_force[k]):.3g} N")
+        elif at.opening[k] < -length:
+            words.append(f"{names[k]} is open {-float(at.opening[k]):.3g} m below the surface")
+        else:
+            words.append(f"{names[k]} is open, but closes by {-float(at.opening_acceleration[k]):.3g} m/s²")
+    for k, status in enumerate(at.status):
+        if status != SEPARATED and structure.is_rigid(k) and abs(float(at.opening[k])) > length:
+            words.append(f"{names[k]} is closed at a distance of {float(at.opening[k]):.3g} m")
+    stops = stopping(structure, at)
+    if stops is not None:
+        words.append(f"friction stops {names[stops]}")
+    return words + beyond_friction(structure, at)
+
+
+def beyond_friction(structure: Structure, at: Balance) -> list[str]:
+    """Return each sticking contact that friction cannot hold, in words.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    at : Balance
+        Balance of forces.
+    """
+    least = ROUND_OFF * float(np.abs([at.normal_force, at.tangential_force]).max(initial=0.0))
+    words = []
+    for k, contact in enumerate(structure.system.contacts):
+        if at.status[k] == STICKING:
+            most = float(contact.friction.coefficient_at(0.0)) * float(at.normal_force[k])
+            pulled = float(np.hypot(at.tangential_force[k], at.lateral_force[k]))
+            if pulled > most + least:
+                name = structure.system.contact_names[k]
+                words.append(f"{name} sticks with {pulled:.3g} N of at most {most:.3g} N")
+    return words
+
+
+def slides_on(structure: Structure, status: Sequence[str], share: Array) -> bool:
+    """Return whether contact forces exist for every motion: no impulse on a sliding contact jams it (Painlevé).
+
+    With the instantaneous compliance W of the contacts, ``W_NN - share W_NT`` must have positive principal minors. If
+    residual shapes respond instantaneously, the response of modes is negligible.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    status : sequence of str
+        Status of each contact.
+    share : ndarray, shape (contacts,)
+        Signed tangential over normal force of sliding contacts [1].
+    """
+    held, pushes, closed, _ = held_rows(structure, status, share)
+    # Compliant contacts respond to any impulse.
+    rigid = rigid_rows(structure, closed, len(held))
+    size = sum(structure.is_rigid(k) for k in closed)
+    held, pushes = held[rigid], pushes[rigid]
+    kept = _independent(held)
+    held, pushes, size = held[kept], pushes[kept], sum(row < size for row in kept)
+    whole = held * structure.promptness @ pushes.T
+    compliance = whole[:size, :size]
+    if len(held) > size:
+        compliance = compliance - whole[:size, size:] @ np.linalg.solve(whole[size:, size:], whole[size:, :size])
+    # With many contacts only the smallest minors and the determinant are checked, as their number doubles with each.
+    sizes = range(1, size + 1) if size <= MOST_CONTACTS else (1, size)
+    chosen = [list(some) for count in sizes for some in combinations(range(size), count)]
+    return all(np.linalg.slogdet(compliance[np.ix_(some, some)])[0] > 0.0 for some in chosen)
+
+
+def _independent(rows: Array) -> list[int]:
+    """Return the numbers of linearly independent rows that span the others: all of them, if none depends on others."""
+    if rank(rows) == len(rows):
+        return list(range(len(rows)))
+    sizes = np.linalg.norm(rows, axis=1, keepdims=True)
+    triangle, order = scipy.linalg.qr((rows / sizes).T, mode="r", pivoting=True)
+    size = np.abs(np.diag(triangle))
+    return sorted(order[: int(np.sum(size >= UNMOVED * size[0]))].tolist())

@@ -1,0 +1,68 @@
+"""Equilibria of blocks against every set of points tried by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import stridula as st
+
+from .blocks import Block, random_block
+
+
+def different(block: Block) -> list:
+    """Return the equilibria by hand that are in different places."""
+    kept: list = []
+    for one in block.equilibria():
+        moved = block.normal @ one[1]
+        if not any(np.abs(moved - block.normal @ other[1]).max() <= 1e-6 * np.abs(moved).max() for other in kept):
+            kept.append(one)
+    return kept
+
+
+def test_points_are_closed_again():
+    """By hand 92.1, 188.2, 124.3 N, no point open; opening whichever pulls leaves one open 17 um below the belt."""
+    rng = np.random.default_rng(11)
+    count = int(rng.integers(3, 6))
+    stiffness, along = 1e7 * 10 ** rng.uniform(-1, 1, count), np.sort(rng.uniform(-0.1, 0.1, count))
+    height, friction = rng.uniform(0.02, 0.3), rng.uniform(0.1, 0.8)
+    gap = rng.uniform(0, 2e-5, count) * (rng.random(count) < 0.5)
+    load, at = rng.uniform(50, 500), rng.uniform(-0.05, 0.05)
+    one, zero = np.ones(count), np.zeros(count)
+    block = Block(
+        np.diag([1.0, 1.0, 0.01]),
+        np.diag([1e5, 0.0, 0.0]),
+        np.array([zero, one, along]).T,
+        np.array([one, zero, height * one]).T,
+        np.zeros((count, 3)),
+        gap,
+        friction,
+        1.0,
+        [(k, 1.0) for k in stiffness],
+        np.array([0.0, -load, -load * at]),
+    )
+    found = st.sliding_stability(block.system())
+    np.testing.assert_allclose(found.normal_force, [92.10372167, 188.19732436, 124.31677151], rtol=1e-8)
+    assert (found.status == "sliding").all()
+    assert (found.attrs["equilibrium"], found.attrs["equilibria"], found.attrs["violated"]) == ("sliding", "one", "")
+    ((_, _, forces),) = different(block)
+    np.testing.assert_allclose(found.normal_force, forces, rtol=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["linear", "power"])
+@pytest.mark.parametrize("spatial", [False, True])
+def test_every_unique_equilibrium_of_blocks_is_found(spatial, kind):
+    """Forces and growth are those of the set found by hand."""
+    unique = 0
+    for seed in range(25):
+        block = random_block(np.random.default_rng(seed), spatial, kind)
+        by_hand, found = different(block), st.sliding_stability(block.system())
+        if len(by_hand) != 1:
+            continue
+        unique += 1
+        ((closed, _, forces),) = by_hand
+        np.testing.assert_allclose(found.normal_force, forces, rtol=0.0, atol=1e-8 * np.abs(block.load).max())
+        assert found.attrs["violated"] == ""
+        growth = block.growth(closed, forces)
+        assert float(found.growth_rate.max()) == pytest.approx(growth, rel=1e-6, abs=1e-3)
+    assert unique > 8
