@@ -10,7 +10,6 @@ from ..checks import ArgumentError
 from ..declared import Area, Length, Number, check_declared
 from ..doubtful import doubts_of_modulus, doubts_of_size, warn_of
 
-
 # From foam to osmium [kg/m3]; a value below the other is probably in t/mm3: aluminium has 2.7e-9.
 DENSITY, TONNES = (10.0, 3e4), 1e-6
 
