@@ -7,7 +7,7 @@ import pytest
 
 import stridula as st
 from stridula.acoustics.levels import NOMINAL, band_gain
-from stridula.acoustics.weighting import a_weighting
+from stridula.weighting import a_weighting
 
 from .sounds import heard, noise, tone
 

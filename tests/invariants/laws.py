@@ -104,9 +104,12 @@ def of_changing(law, status, forces, state, slip, small, step):
         # The mean velocity of a step is known; within one it changes by about as much as from one to the next.
         spread = 2.0 * np.abs(np.diff(near)).max() + small / step
         speeds = np.linspace(near[:3].min() - spread, near[:3].max() + spread, 9)
+        if isinstance(law, st.RateAndState):
+            # Creep changes by decades from one step to the next.
+            speeds = np.concatenate([speeds / 3.0, 3.0 * speeds])
         if has_state(law):
             if closed[n - 3 : n + 2].all():
-                low, high = ratios_with_state(law, state[n - 3 : n + 1], speeds, step)
+                low, high = ratios_with_state(law, state[n - 3 : n + 1], speeds)
                 blur = 0.05 * (high - low) + margin
                 if not low - blur <= ratio <= high + blur:
                     yield "off the law"
@@ -130,11 +133,11 @@ def of_changing(law, status, forces, state, slip, small, step):
                 return
 
 
-def ratios_with_state(law, states, speeds, step):
+def ratios_with_state(law, states, speeds):
     """Least and largest ratio under a law with internal state, for the states and velocities about a step."""
     spread = np.ptp(states)
     lowest, highest = states.min() - spread, states.max() + spread
     if isinstance(law, st.RateAndState):
         lowest, highest = states.min() / 3.0, 3.0 * states.max()
-    found = [ratio_with_state(law, state, v, 1e-9 * step) for state in np.linspace(lowest, highest, 5) for v in speeds]
+    found = [ratio_with_state(law, state, v) for state in np.linspace(lowest, highest, 5) for v in speeds]
     return min(found), max(found)

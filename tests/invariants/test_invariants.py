@@ -210,7 +210,7 @@ def a_little_weaker(run):
 
 
 def weaker(run):
-    run["tangential_force"] *= 0.95
+    run["tangential_force"] *= 0.8
 
 
 def overlapping(run):

@@ -113,13 +113,12 @@ def state_after(law, state, v, h):
     return distance / speed * (speed * state / distance) ** np.exp(-speed * h / distance)
 
 
-def ratio_with_state(law, state, v, h):
-    """Ratio of forces over a step at slip velocity `v`: with the mean of the state, and its rate."""
-    new = state_after(law, state, v, h)
-    mean, rate = (state + new) / 2, (new - state) / h
+def ratio_with_state(law, state, v):
+    """Ratio of forces at slip velocity `v`."""
     if isinstance(law, st.LuGre):
-        return law.stiffness * mean + law.damping * rate + law.viscous * v
-    exponent = (law.reference + law.b * np.log(law.velocity * mean / law.slip_distance)) / law.a
+        limit = (law.kinetic + (law.static - law.kinetic) * np.exp(-((v / law.velocity) ** 2))) / law.stiffness
+        return law.stiffness * state + law.damping * (v - abs(v) * state / limit) + law.viscous * v
+    exponent = (law.reference + law.b * np.log(law.velocity * state / law.slip_distance)) / law.a
     return law.a * np.arcsinh(v / (2 * law.velocity) * np.exp(exponent))
 
 
@@ -384,7 +383,7 @@ class Touch:
         self.law = contact.friction
         self.status, self.state, self.anchor = SEPARATED, state_of_new(self.law), 0.0
         self.material = self.place = self.place_before = self.last_slip = self.past = 0.0
-        self.drive, self.rests = np.nan, False
+        self.earlier_slip, self.rests = 0.0, False
         self.normal = self.tangential = self.closed = self.gap = 0.0
         self.given = None
 
@@ -467,9 +466,12 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             one.status = STICKING if one.gap == 0.0 and speed == 0.0 else SEPARATED
             if one.status == STICKING:
                 one.last_slip = 0.0
+            one.earlier_slip = 3 * one.last_slip - 2 * h * speed
             one.given = None
             if has_state(one.law):
-                one.given = ratio_with_state(one.law, one.state, speed, h)
+                one.given = ratio_with_state(
+                    one.law, (one.state + state_after(one.law, one.state, speed, h)) / 2, speed
+                )
             elif speed != 0.0:
                 one.given = np.sign(speed) * curve(one.law, abs(speed))
         return [one for one in touches if one.gap == 0.0]
@@ -547,7 +549,6 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             gap = gaps[i] + rows[2 * i] @ (q_new - trial)
             if status != SEPARATED and not isinstance(one.law, st.Coulomb):
                 free = slips[i] + rows[2 * i + 1] @ (q_new - trial) - w[1] @ [normal, -tangential]
-                one.drive_now = free + w[1, 0] * normal - one.last_slip
                 _, one.past_now, one.state_now, _, one.rests = on_its_way(
                     LAWS, one, normal, free, strayed[i], w, h, i in let_go
                 )
@@ -579,7 +580,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
                 one.anchor = one.anchor if one.rests and one.status == STICKING else material
             elif status == STICKING and one.status != STICKING:
                 one.anchor = one.material
-            one.past, one.drive = (one.past_now, one.drive_now) if on_way else (0.0, 0.0)
+            one.past, one.earlier_slip = one.past_now if on_way else 0.0, one.last_slip
             if has_state(one.law):
                 one.state = one.state_now if on_way else state_of_new(one.law)
             landings.append(int(one.status == SEPARATED and status != SEPARATED))

@@ -130,12 +130,12 @@ def _slide(way, u, begin, drive, sense):
 
 
 def _with_state(laws, before, begun, drive, pull, moved, h):
-    """The way under a law with internal state, by the midpoint rule in parts."""
+    """The way under a law with internal state, in parts of a rule of two stages, each with its ratio at its end."""
     law, state, past, grows = before.law, before.state, before.past, 0.0
     if before.status == SEPARATED:
-        past = 0.5 * laws.ratio_with_state(law, state, begun / h, 1e-9 * h)
-    elif not np.isnan(before.drive):
-        grows = drive - before.drive
+        past = 0.5 * laws.ratio_with_state(law, state, begun / h)
+    elif before.normal > 0:
+        grows = drive - (before.last_slip - before.earlier_slip) - pull * before.tangential / before.normal
     u = begun - pull * past - grows / 6
     if isinstance(law, st.LuGre):
         change = (abs(drive) + pull * law.static) / (4 * law.velocity * h)
@@ -143,19 +143,27 @@ def _with_state(laws, before, begun, drive, pull, moved, h):
     else:
         count = 2 + (abs(u) + abs(drive)) / law.slip_distance
     count = int(min(count, 64))
-    size, later, rest = 1 / count, 0.0, 0.0
+    size, later, rest, share = 1 / count, 0.0, 0.0, 1 - np.sqrt(0.5)
+    inner = np.array([[share, 0.0], [1 - share, share]])
     for k in range(count):
-        driven = drive + grows * (k + 0.25) * size
+        begin = drive + grows * k * size
+        # The growth of the drive, divided so that creep under it has the slip of its stages.
+        growth = np.array([(1 / 6 - share / 2) / (1 - share), 0.5])
+        ratios = np.zeros(2)
+        for stage in range(2):
+            free = u + size * (inner[stage].sum() * begin + growth[stage] * size * grows - pull * inner[stage] @ ratios)
 
-        def error(v, u=u, driven=driven, state=state):
-            ratio = laws.ratio_with_state(law, state, v, size * h)
-            return v * h - u - size / 2 * (driven - pull * ratio)
+            def error(v, free=free, state=state):
+                ratio = laws.ratio_with_state(law, laws.state_after(law, state, v, share * size * h), v)
+                return v * h - free + share * size * pull * ratio
 
-        v = _root(error, law, abs(u) / h + abs(driven) / h)
-        ratio, middle = laws.ratio_with_state(law, state, v, size * h), (k + 0.5) * size
-        later, rest = later + size * (1 - middle) * ratio, rest + size * middle * ratio
-        u += size * (drive + grows * middle - pull * ratio)
-        state = laws.state_after(law, state, v, size * h)
+            v = _root(error, law, abs(u) / h + abs(free) / h)
+            ratios[stage] = laws.ratio_with_state(law, laws.state_after(law, state, v, share * size * h), v)
+            state = laws.state_after(law, state, v, (1 - share, share)[stage] * size * h)
+        slips, velocities = inner[1] @ inner, inner[1]
+        weights = size**2 * slips + size * velocities * (1 - (k + 1) * size)
+        later, rest = later + weights @ ratios, rest + (size * velocities - weights) @ ratios
+        u = v * h
     ratio = past + later
     slow = abs(moved - pull * ratio) < h * law.velocity
     return ratio, rest, state, STICKING if slow else SLIDING, False

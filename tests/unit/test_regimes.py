@@ -10,10 +10,9 @@ import xarray as xr
 
 import stridula as st
 from stridula import analysis
-from stridula.analysis.heard import frames, strongest_tone
+from stridula.analysis.heard import frames
 from stridula.analysis.status_changes import (
     MIXED,
-    between_stops,
     changes,
     last_rest,
     least_landings,
@@ -492,15 +491,6 @@ def test_the_last_rest_must_outlast_all_before():
     assert last_rest(np.array([2, 2])) == 0
 
 
-def test_the_weight_between_stops_falls_to_zero_at_their_edges():
-    sticking = np.repeat([1.0, 0.0, 1.0], [100, 300, 100])
-    weight = between_stops(sticking, 21)
-    assert weight[:100].max() < 0.05
-    assert weight[99] == weight[400] < 0.05
-    np.testing.assert_allclose(weight[112:388], 1.0, atol=1e-12)
-    np.testing.assert_array_equal(between_stops(np.ones(50), 21), 1.0)
-
-
 def test_changes():
     assert changes(np.array([1, 2, 1])) == 2
     assert changes(np.array([1, MIXED, 2, MIXED, 2])) == 3
@@ -521,8 +511,6 @@ def test_frames_keep_the_power_and_leave_low_frequencies_aside():
     found = frames(tone(900.0, 0.5)[None] + tone(50.0, 3.0), 1.0 / RATE, 0.03, 300.0)
     assert found.level == pytest.approx(0.5 / np.sqrt(2.0), rel=1e-2)
     assert found.growth == pytest.approx(1.0, abs=0.01)
-    assert strongest_tone(tone(900.0, 0.5)[None], 1.0 / RATE, 0.03, 300.0) == pytest.approx(900.0, abs=1.0)
-    assert np.isnan(strongest_tone(np.zeros((1, 100)), 1.0 / RATE, 0.03, 300.0))
 
 
 # Shipped cases.
@@ -541,8 +529,9 @@ EXPECTED = {
 }
 
 
-# Tones from landings; from relaxations, near the paper's 2.5 kHz; from the theoretical cycle on the belt.
-FREQUENCY = {"squeal": (320.0, 335.0), "strong-pressure": (2650.0, 2750.0), "belt": (0.273, 0.274)}
+# Tones from the bursts, near the paper's 900 Hz; from relaxations, near its 2.5 kHz; from the theoretical cycle on the
+# belt.
+FREQUENCY = {"squeal": (840.0, 900.0), "strong-pressure": (2650.0, 2750.0), "belt": (0.273, 0.274)}
 # Under strong pressure the tone of the relaxations has about half of the audible power, between squeal and judder.
 LEAST_CONFIDENCE = {"strong-pressure": 0.5}
 

@@ -46,36 +46,6 @@ def sliding_ratio(law, laws, i, speed):
     return max(laws[i, 0] - laws[i, 1] * speed, laws[i, 2])
 
 
-@numba.njit(inline="always", **STRICT)
-def ratio_and_slope(law, laws, i, speed):
-    """Return the ratio of a speed-dependent law at a speed above zero, and its first two derivatives."""
-    if law == at.LINEAR_WEAKENING:
-        ratio = laws[i, 0] - laws[i, 1] * speed
-        falls = ratio > laws[i, 2]
-        return ratio if falls else laws[i, 2], -laws[i, 1] if falls else 0.0, 0.0
-    exponent, relative = laws[i, 3], speed / laws[i, 2]
-    if exponent != 1.0:
-        relative = relative * relative if exponent == 2.0 else relative**exponent
-    weakened = (laws[i, 0] - laws[i, 1]) * math.exp(-relative)
-    fall = exponent * relative / speed
-    bend = weakened * fall * (fall - (exponent - 1.0) / speed)
-    return laws[i, 1] + weakened + laws[i, 4] * speed, laws[i, 4] - weakened * fall, bend
-
-
-@numba.njit(inline="always", **STRICT)
-def corner_between(law, laws, i, one, other):
-    """Return whether the ratio of a law has a corner between two speeds, which invalidates its slope."""
-    if law != at.LINEAR_WEAKENING:
-        return False
-    return (laws[i, 0] - laws[i, 1] * one > laws[i, 2]) != (laws[i, 0] - laws[i, 1] * other > laws[i, 2])
-
-
-@numba.njit(**STRICT)
-def least_ratio(law, laws, i):
-    """Return the ratio that a weakening law falls to, without its viscous part."""
-    return laws[i, 1] if law == at.STRIBECK else laws[i, 2]
-
-
 @numba.njit(**STRICT)
 def speed_scale(law, laws, i, state):
     """Return the slip speed above which the ratio of a law begins to bend."""
@@ -84,8 +54,14 @@ def speed_scale(law, laws, i, state):
     if law <= at.LUGRE:
         return laws[i, 2]
     # a asinh(V / w): w = 2 V0 exp(-(reference + b ln(V0 theta / D)) / a), kept above the smallest numbers.
-    exponent = (laws[i, 0] + laws[i, 2] * math.log(laws[i, 4] * state / laws[i, 3])) / laws[i, 1]
-    return 2.0 * laws[i, 4] * math.exp(-min(exponent, 600.0))
+    return 2.0 * laws[i, 4] * math.exp(-min(ageing(laws, i, state), 600.0))
+
+
+@numba.njit(inline="always", **STRICT)
+def bristle_limit(laws, i, speed):
+    """Return the deflection of LuGre's bristles in steady sliding at a speed, and its derivative by the speed."""
+    weakened = (laws[i, 0] - laws[i, 1]) * math.exp(-((speed / laws[i, 2]) ** 2))
+    return (laws[i, 1] + weakened) / laws[i, 3], -2.0 * speed / (laws[i, 2] * laws[i, 2]) * weakened / laws[i, 3]
 
 
 @numba.njit(inline="always", **STRICT)
@@ -101,9 +77,7 @@ def bristles_over(laws, i, speed, step):
     passed, passed_slope, share_slope : float
         Slip relative to the limit deflection, its derivative by the speed, and the derivative of `share` by it.
     """
-    weakened = (laws[i, 0] - laws[i, 1]) * math.exp(-((speed / laws[i, 2]) ** 2))
-    limit = (laws[i, 1] + weakened) / laws[i, 3]
-    limit_slope = -2.0 * speed / (laws[i, 2] * laws[i, 2]) * weakened / laws[i, 3]
+    limit, limit_slope = bristle_limit(laws, i, speed)
     passed = speed * step / limit
     passed_slope = step / limit * (1.0 - speed * limit_slope / limit)
     kept = math.exp(-passed)
@@ -130,53 +104,58 @@ def next_state(law, laws, i, state, velocity, step):
 
 
 @numba.njit(**STRICT)
-def state_ratio(law, laws, i, state, velocity, step):
-    """Return the ratio of a law with internal state over a step, from mean and rate of the state."""
-    new = next_state(law, laws, i, state, velocity, step)
-    middle = 0.5 * (state + new)
+def state_ratio(law, laws, i, state, velocity):
+    """Return the ratio of a law with internal state at a slip velocity."""
+    speed = abs(velocity)
     if law == at.LUGRE:
-        return laws[i, 3] * middle + laws[i, 4] * (new - state) / step + laws[i, 5] * velocity
+        rate = velocity - speed * state / bristle_limit(laws, i, speed)[0]
+        return laws[i, 3] * state + laws[i, 4] * rate + laws[i, 5] * velocity
     if velocity == 0.0:
         return 0.0
-    exponent = (laws[i, 0] + laws[i, 2] * math.log(laws[i, 4] * middle / laws[i, 3])) / laws[i, 1] + math.log(
-        abs(velocity) / (2.0 * laws[i, 4])
-    )
+    exponent = ageing(laws, i, state) + math.log(speed / (2.0 * laws[i, 4]))
     ratio = exponent + math.log(2.0) if exponent > 30.0 else math.asinh(math.exp(exponent))
     return math.copysign(laws[i, 1] * ratio, velocity)
 
 
+@numba.njit(inline="always", **STRICT)
+def ageing(laws, i, state):
+    """Return the logarithm of the velocity of the law over that at which a contact of this state creeps."""
+    return (laws[i, 0] + laws[i, 2] * math.log(laws[i, 4] * state / laws[i, 3])) / laws[i, 1]
+
+
 @numba.njit(**STRICT)
-def state_ratio_and_slope(law, laws, i, state, velocity, step):
-    """Return the ratio of a law with internal state over a step, and its derivative by the slip velocity."""
+def ratio_after(law, laws, i, state, velocity, time):
+    """Return the ratio of a law with internal state after some time at a slip velocity, and its derivative by it."""
     speed = abs(velocity)
     if law == at.LUGRE:
-        kept, share, _, by_speed, share_slope = bristles_over(laws, i, speed, step)
-        passed_slope = math.copysign(by_speed, velocity)
-        new = state * kept + velocity * step * share
-        new_slope = -state * kept * passed_slope + step * (share + velocity * share_slope * passed_slope)
-        ratio = laws[i, 3] * 0.5 * (state + new) + laws[i, 4] * (new - state) / step + laws[i, 5] * velocity
-        return ratio, (0.5 * laws[i, 3] + laws[i, 4] / step) * new_slope + laws[i, 5]
-    turned, kept = speed * step / laws[i, 3], 1.0
+        kept, share, _, by_speed, share_slope = bristles_over(laws, i, speed, time)
+        sense = math.copysign(1.0, velocity)
+        new = state * kept + velocity * time * share
+        new_slope = -state * kept * sense * by_speed + time * (share + speed * share_slope * by_speed)
+        limit, limit_slope = bristle_limit(laws, i, speed)
+        bent = sense * new / limit
+        rate_slope = 1.0 - bent - speed / limit * (new_slope - bent * limit_slope)
+        ratio = laws[i, 3] * new + laws[i, 4] * velocity * (1.0 - bent) + laws[i, 5] * velocity
+        return ratio, laws[i, 3] * new_slope + laws[i, 4] * rate_slope + laws[i, 5]
+    turned = speed * time / laws[i, 3]
     new, new_slope = state, 0.0
     if law == at.AGING:
         kept = math.exp(-turned)
         share = 1.0 - 0.5 * turned if turned < 1e-8 else -math.expm1(-turned) / turned
         share_slope = turned / 3.0 - 0.5 if turned < 1e-4 else (kept - share) / turned
-        new = state * kept + step * share
-        new_slope = (step * share_slope - state * kept) * step / laws[i, 3]
+        new = state * kept + time * share
+        new_slope = (time * share_slope - state * kept) * time / laws[i, 3]
     elif turned > 0.0:
         kept, age = math.expm1(-turned), math.log(speed * state / laws[i, 3])
         new = state * math.exp(age * kept)
-        new_slope = new * (kept / speed - age * (kept + 1.0) * step / laws[i, 3])
-    middle = 0.5 * (state + new)
-    ageing = (laws[i, 0] + laws[i, 2] * math.log(laws[i, 4] * middle / laws[i, 3])) / laws[i, 1]
+        new_slope = new * (kept / speed - age * (kept + 1.0) * time / laws[i, 3])
     if speed == 0.0:
-        return 0.0, laws[i, 1] * math.exp(min(ageing, 600.0)) / (2.0 * laws[i, 4])
-    exponent = ageing + math.log(speed / (2.0 * laws[i, 4]))
+        return 0.0, laws[i, 1] * math.exp(min(ageing(laws, i, new), 600.0)) / (2.0 * laws[i, 4])
+    exponent = ageing(laws, i, new) + math.log(speed / (2.0 * laws[i, 4]))
     argument = math.exp(min(exponent, 300.0))
     ratio = exponent + math.log(2.0) if exponent > 30.0 else math.asinh(argument)
     bent = argument / math.sqrt(1.0 + argument * argument)
-    slope = laws[i, 1] * bent * (1.0 / speed + laws[i, 2] / laws[i, 1] * 0.5 * new_slope / middle)
+    slope = laws[i, 1] * bent * (1.0 / speed + laws[i, 2] / laws[i, 1] * new_slope / new)
     return math.copysign(laws[i, 1] * ratio, velocity), slope
 
 

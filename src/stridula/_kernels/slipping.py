@@ -16,10 +16,10 @@ from .friction import (
     STRICT,
     holding_ratio,
     next_state,
+    ratio_after,
     sliding_ratio,
     speed_scale,
     state_ratio,
-    state_ratio_and_slope,
 )
 
 # A contact that stopped slid in this step and is at rest at its end: the next step finds it sticking.
@@ -28,6 +28,10 @@ SEPARATED, STICKING, SLIDING, STOPPED = 0, 1, 2, 3
 MOST_PARTS, REVERSALS = 64, 3
 # Bend of the law in a part; phase of bristles in a part; ageing in a part.
 PART, PHASE, AGEING = 0.5, 0.25, 1.0
+# First stage of the implicit rule, as a share of a part.
+STAGE = 1.0 - math.sqrt(0.5)
+# What the growth of the drive adds to the slip of that stage, so that the mean of the stages is that of the drive.
+GROWTH_AT_STAGE = (1.0 / 6.0 - 0.5 * STAGE) / (1.0 - STAGE)
 # Steps of Newton's method and trials of a bracketed search for the velocity of a part, and their relative accuracy.
 NEWTON, TRIALS, SETTLED = 8, 200, 1e-13
 
@@ -177,33 +181,31 @@ def ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step
 
 
 @numba.njit(**STRICT)
-def velocity_of_part(slip, size, drive, pull, law, laws, i, state, step):
-    """Return the slip velocity in the middle of a part under a law with internal state, by the midpoint rule.
+def velocity_after(free, pulled, guess, law, laws, i, state, time):
+    """Return the slip velocity ``v = free - pulled r`` and the ratio r of a law with internal state after some time.
 
-    Newton's method from the velocity at its beginning, then a bracketed search on the scale ``sinh(y)``, so that creep
-    and sliding share one scale.
+    Newton's method from a guess, then a bracketed search on the scale ``sinh(y)``, so that creep and sliding share one
+    scale.
     """
-    half, time = 0.5 * size / step, size * step
-    free, pulled = slip / step + half * drive, half * pull
-    velocity = slip / step
+    velocity = guess
     for _ in range(NEWTON):
-        ratio, slope = state_ratio_and_slope(law, laws, i, state, velocity, time)
+        ratio, slope = ratio_after(law, laws, i, state, velocity, time)
         steepness = 1.0 + pulled * slope
         if not steepness > 0.0:
             break
         change = (free - pulled * ratio - velocity) / steepness
         if abs(change) <= SETTLED * abs(velocity + change):
-            return velocity + change
+            return velocity + change, ratio + slope * change
         if law != at.LUGRE and velocity * (velocity + change) <= 0.01 * velocity * velocity:
             break
         velocity += change
-    sense = 1.0 if free - pulled * state_ratio(law, laws, i, state, 0.0, time) >= 0.0 else -1.0
+    sense = 1.0 if free - pulled * ratio_after(law, laws, i, state, 0.0, time)[0] >= 0.0 else -1.0
     scale, reach = speed_scale(law, laws, i, state), max(abs(free), 1e-300)
     low, high = 0.0, 0.0
     for _ in range(TRIALS):
         velocity = sense * reach
         high = math.asinh(reach / scale)
-        if sense * (velocity - free + pulled * state_ratio(law, laws, i, state, velocity, time)) >= 0.0:
+        if sense * (velocity - free + pulled * ratio_after(law, laws, i, state, velocity, time)[0]) >= 0.0:
             break
         low, reach = high, 2.0 * reach
     for _ in range(TRIALS):
@@ -211,11 +213,12 @@ def velocity_of_part(slip, size, drive, pull, law, laws, i, state, step):
             break
         y = 0.5 * (low + high)
         velocity = sense * scale * math.sinh(y)
-        if sense * (velocity - free + pulled * state_ratio(law, laws, i, state, velocity, time)) >= 0.0:
+        if sense * (velocity - free + pulled * ratio_after(law, laws, i, state, velocity, time)[0]) >= 0.0:
             high = y
         else:
             low = y
-    return sense * scale * math.sinh(0.5 * (low + high))
+    velocity = sense * scale * math.sinh(0.5 * (low + high))
+    return velocity, ratio_after(law, laws, i, state, velocity, time)[0]
 
 
 @numba.njit(**STRICT)
@@ -233,26 +236,33 @@ def parts_with_state(slip, drive, pull, law, laws, i, step):
 def ratio_with_state(normal, slip, w, law, laws, i, before, step):
     """Return the ratio of forces over a step under a law with internal state, its past part, and the new state.
 
-    The drive goes on through the step as it changed in the last one: a law whose velocity depends on the logarithm of
-    the force would notice its jumps.
+    Each part takes the diagonally implicit rule of two stages and second order that forgets what a stiff contact would
+    not keep: a contact that creeps takes its velocity from its friction, whatever its last one was. The drive goes on
+    through the step as it changed in the last one, in which it was the change of the slip and the ratio: a law whose
+    velocity depends on the logarithm of the force would notice its jumps.
     """
     was, last, state, past = before[0], before[1], before[3], before[6]
     pull, moved = w[3] * normal, slip + w[2] * normal
     begun, drive, grows = 0.5 * (last + moved), moved - last, 0.0
     if was == SEPARATED:
-        past = 0.5 * state_ratio(law, laws, i, state, begun / step, 1e-9 * step)
-    elif not math.isnan(before[7]):
-        # At the start the last drive is not known.
-        grows = drive - before[7]
+        past = 0.5 * state_ratio(law, laws, i, state, begun / step)
+    elif before[4] > 0.0:
+        grows = drive - (last - before[2]) - pull * before[5] / before[4]
     slip_now = begun - pull * past - grows / 6.0
     count = parts_with_state(slip_now, drive, pull, law, laws, i, step)
-    size, later, rest = 1.0 / count, 0.0, 0.0
+    size, later, rest, velocity = 1.0 / count, 0.0, 0.0, slip_now / step
+    time, pulled = STAGE * size * step, STAGE * size * pull / step
     for k in range(count):
-        driven = drive + grows * (k + 0.25) * size
-        velocity = velocity_of_part(slip_now, size, driven, pull, law, laws, i, state, step)
-        ratio = state_ratio(law, laws, i, state, velocity, size * step)
-        middle = (k + 0.5) * size
-        later, rest = later + size * (1.0 - middle) * ratio, rest + size * middle * ratio
-        slip_now += size * (drive + grows * middle - pull * ratio)
-        state = next_state(law, laws, i, state, velocity, size * step)
+        begin, left = k * size, 1.0 - (k + 1.0) * size
+        driven = drive + grows * begin
+        free = slip_now + size * (STAGE * driven + GROWTH_AT_STAGE * size * grows)
+        velocity, first = velocity_after(free / step, pulled, velocity, law, laws, i, state, time)
+        state = next_state(law, laws, i, state, velocity, size * step - time)
+        free = slip_now + size * (driven + 0.5 * size * grows - (1.0 - STAGE) * pull * first)
+        velocity, second = velocity_after(free / step, pulled, velocity, law, laws, i, state, time)
+        state = next_state(law, laws, i, state, velocity, time)
+        # Weights with which the mean of the slip over the part is that of its stages.
+        more = (1.0 - STAGE) * (2.0 * STAGE * size + left) * first + STAGE * (STAGE * size + left) * second
+        later, rest = later + size * more, rest + size * ((1.0 - STAGE) * first + STAGE * second - more)
+        slip_now = velocity * step
     return past + later, rest, state

@@ -18,7 +18,7 @@ from ..records.changes import check_one_system
 from ..records.checked import record
 from ..system import System
 from .driven import LEAD, steady
-from .recorded import sampled
+from .recorded import BEFORE, sampled
 
 # Largest number of steps in an interval at which drives are evaluated.
 MOST_STEPS = 50
@@ -131,6 +131,8 @@ def driving(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = None
     if len(normal) != len(system.contacts):
         words = f"be a record of this system, of {len(system.contacts)} contacts"
         raise ArgumentError("run", words, run, got=f"one of {len(normal)}")
+    if start < 0.5 * interval:
+        normal, tangential = _from_rest(assemble(system), normal, tangential, steps)
     rows, signals = _of_contacts(flat, normal, tangential)
     if any(one.circle is not None for one in flat.contacts):
         rows, signals = _gone_round(flat, rows, signals, _places(given, system))
@@ -211,10 +213,21 @@ def _of_drives(flat: Assembly, start: float, interval: float, steps: int, sample
     for load, signal in zip(found, flat.signals, strict=False):
         values = signal(times, step)
         if start < 0.5 * interval:
-            # A run begins in the middle of the impulse of its first step.
-            values[0] *= 0.5
+            values[0] *= 1.0 - BEFORE
         load[:] = values.reshape(samples, steps).mean(axis=1)
     return found
+
+
+def _from_rest(flat: Assembly, normal: Array, tangential: Array, steps: int) -> tuple[Array, Array]:
+    """Return forces with the first impulse of contacts that are closed at the start counted by half, as in the run."""
+    firsts = [one for one in flat.contacts if not one.is_second]
+    gaps = np.array([one.rows_at(one.at)[0] @ flat.position + one.gap for one in firsts])
+    closed = (gaps < 0.0) | (np.array([one.yields is None for one in firsts]) & (gaps == 0.0))
+    share = np.where(closed, BEFORE / steps, 0.0)
+    normal, tangential = normal.copy(), tangential.copy()
+    normal[:, 0] -= share * normal[:, 0]
+    tangential[..., 0] -= (share * tangential[..., 0].T).T
+    return normal, tangential
 
 
 def _of_contacts(flat: Assembly, normal: Array, tangential: Array) -> tuple[Array, Array]:

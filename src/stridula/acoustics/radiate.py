@@ -45,8 +45,9 @@ def radiate(
     Bodies whose motion is recorded, see `ModalMotion`, move as recorded and are not driven again.
 
     The same holds for the tracks of a system in the plane, also under its drives, springs and dashpots. Its beams, such
-    as the slider, are lines of dipoles driven again by all forces at their contacts and by the drives; a baffle that tracks are flush with reflects their sound.
-    In space there is a baffle only with ``baffled=True``: plates and beams of rectangular section are flush with it.
+    as the slider, are lines of dipoles driven again by all forces at their contacts and by the drives; a baffle that
+    tracks are flush with reflects their sound. In space there is a baffle only with ``baffled=True``: plates and beams
+    of rectangular section are flush with it.
 
     Parameters
     ----------
@@ -55,9 +56,9 @@ def radiate(
         ``run.sel(contact=[...])``.
     track : ModalBeam, ModalPlate, System or Bridge
         Source of the sound. A track need not be the body of the run, but must reach as far as it is pressed; without
-        its system, only contacts press it. For a system, that of the run, the sound is the sum over its bodies: in space over all that have a surface, in the
-        plane over tracks and slim beams. For a bridge, it is that of the body driven by the recorded force on the
-        support of a string.
+        its system, only contacts press it. For a system, that of the run, the sound is the sum over its bodies: in
+        space over all that have a surface, in the plane over tracks and slim beams. For a bridge, it is that of the
+        body driven by the recorded force on the support of a string.
     listener : tuple of float, or sequence of tuples, optional
         Places of the listeners, x, y, z [m]: x along the track from its left end, y across it in its surface, from the
         axis of a beam or from the first edge of a plate, z above it, on the slider's side. A pair of ears a metre above

@@ -12,6 +12,8 @@ from ..checks import ArgumentError, at_least, at_most, count
 from ..records.checked import record
 from .panels import Panel
 
+# Share of the impulse of the first step that lies before the start of a run.
+BEFORE = 0.5
 DIVERGED = ("not finite", "contact unsolved", "energy created")
 
 
@@ -61,6 +63,9 @@ def pressing(run: xr.Dataset, panel: Panel) -> Pressing:
         # In space the track lies along the first tangent.
         position = position[:, 0]
     _check_on_track(position, panel)
+    if start < 0.5 * interval:
+        force = force.copy()
+        force[:, 0] *= 1.0 - BEFORE / steps
     before = np.concatenate([position[:, :1], position[:, :-1]], axis=1)
     return Pressing(start, interval, steps, force, (before + position) / 2.0)
 

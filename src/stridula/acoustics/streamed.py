@@ -16,6 +16,7 @@ from .delays import Sampling
 from .driven import DEGREE, FASTEST, LEAD, filters, undo_mean
 from .listeners import listeners_of
 from .panels import panel_of
+from .recorded import BEFORE
 from .resampling import ATTENUATION, BANDWIDTH, bandwidth_of
 from .responses import Baffled
 from .sample_rates import low_pass
@@ -68,7 +69,7 @@ class StreamedSound:
         way.check(listeners)
         kept = np.flatnonzero(way.panel.angular_frequency * interval < FASTEST)
         panel = way.panel.only(kept)
-        self.taps = undo_mean(steps)
+        self.steps, self.taps = steps, undo_mean(steps)
         bandwidth = bandwidth_of(Fraction(1), 1.0 / interval)
         sampling = Sampling(interval, bandwidth, EARLY - 0.5 / steps)
         (path,) = way.heard(kept, listeners, air, sampling).responses
@@ -116,6 +117,7 @@ class StreamedSound:
         """
         if len(position) and not self.has_begun:
             self.position[:], self.has_begun = position[0], True
+            force = np.concatenate([(1.0 - BEFORE / self.steps) * force[:1], force[1:]])
         force, self.force = np.concatenate([self.force, force]), np.concatenate([self.force, force])[-2 * LEAD :]
         places = np.concatenate([self.position, position])
         self.position = places[-LEAD:]

@@ -1,4 +1,4 @@
-"""Frequency weighting A and the time weightings of sound level meters (IEC 61672-1)."""
+"""Sounds weighted as sound level meters do: in frequency by A, and in time (IEC 61672-1)."""
 
 from __future__ import annotations
 
@@ -7,24 +7,12 @@ import scipy  # its parts are imported on first use
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 
 from ..arrays import Array
+from ..weighting import a_weighting
 
-# Poles of IEC 61672-1:2013, annex E [Hz]; those at the ends are double. The gain at 1 kHz is one.
-POLES = (20.598997, 107.65265, 737.86223, 12194.217)
 # Time constants of the time weightings [s].
 TIME_CONSTANTS = {"fast": 0.125, "slow": 1.0}
 # Silence added at the end [s], in which the slowest pole dies away by 100 dB.
 TAIL = 0.1
-
-
-def a_weighting(frequency: Array) -> Array:
-    """Return the complex gain of the analogue A-weighting of IEC 61672-1 at frequencies [Hz], one at 1 kHz."""
-    low, second, third, high = (2.0 * np.pi * pole for pole in POLES)
-
-    def gain(hertz: Array) -> Array:
-        s = 2.0j * np.pi * np.asarray(hertz, dtype=float)
-        return s**4 / ((s + low) ** 2 * (s + second) * (s + third) * (s + high) ** 2)
-
-    return np.asarray(gain(frequency) / np.abs(gain(np.array(1000.0))))
 
 
 def a_weighted(values: Array, rate: float) -> Array:

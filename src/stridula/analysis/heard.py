@@ -107,37 +107,3 @@ def _basis(size: int, padded: int, first: int, lags: int) -> tuple[Array, Array]
     sides = np.where((number == 0) | (number == padded // 2), 1.0, 2.0)
     waves = np.cos(2.0 * np.pi / padded * np.outer(number, np.arange(lags)))
     return window, sides[:, None] * waves / (padded * overlap)
-
-
-def strongest_tone(forces: Array, interval: float, length: float, lowest: float) -> float:
-    """Return the frequency above `lowest` [Hz] of the largest power of the forces, NaN if they have none.
-
-    The power is summed over bands as wide as the resolution of a frame of `length` seconds; the centre of power of
-    the strongest band and its neighbours is returned.
-
-    Parameters
-    ----------
-    forces : ndarray, shape (forces, samples)
-        Recorded forces [N].
-    interval : float
-        Interval of the samples [s].
-    length : float
-        Length of a frame [s].
-    lowest : float
-        Lowest tone [Hz].
-    """
-    size = forces.shape[1]
-    if size < FEWEST:
-        return float("nan")
-    step = 1.0 / (size * interval)
-    first = int(np.ceil(lowest / step))
-    spectra = np.fft.rfft(forces, axis=1)[:, first:]
-    power = np.sum(spectra.real**2 + spectra.imag**2, axis=0)
-    width = max(1, round(1.0 / (length * step)))
-    bands = power[: power.size // width * width].reshape(-1, width).sum(axis=1)
-    if not bands.size or not bands.max() > 0.0:
-        return float("nan")
-    top = int(bands.argmax())
-    near = slice(max(top - 1, 0) * width, (top + 2) * width)
-    frequency = (first + np.arange(power.size)[near]) * step
-    return float(power[near] @ frequency / power[near].sum())

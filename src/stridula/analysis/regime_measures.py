@@ -10,19 +10,22 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, positive, within
-from .heard import Frames, frames, strongest_tone
-from .phases import ROUND_OFF, SMOOTHING
+from .heard import Frames, frames
+from .pitch import AudibleSpectrum, audible_spectrum
 from .several_contacts import cycles, landings_of, loads, mean_shares, statuses, stretches, together
-from .status_changes import MIXED, between_stops, last_rest, prevailing, regularity, slips, vibrations
+from .status_changes import MIXED, last_rest
+from .status_cycles import StatusCycles
 
 STICKING = 1
 # Share of samples with a change of status above which the cycle is faster than the samples: a cycle sampled eight
 # times per period has a quarter.
 UNRESOLVED = 0.5
-# Time steps up to which a stick or a slip may be noise.
-NOISY_STEPS = 2.0
 # Fraction of `faint` above which a growing tone counts.
 BUDDING = 0.02
+# Level in bursts over that of the whole record, below which bursts are not what is heard [1].
+FAINTER = 0.5
+# Shortest cycle of status that samples show [samples].
+SHORTEST_CYCLE = 1.5
 
 
 class Signals(NamedTuple):
@@ -106,21 +109,23 @@ class Measures:
     separated, sticking, sliding : float
         Shares of the time [1].
     tonality : float
-        Share of the audible power that repeats itself [1]; for cycles faster than the samples, their similarity.
+        Share of the audible power that repeats itself [1]; for cycles of faint forces the share of them that recur, for
+        cycles faster than the samples their similarity.
     audibility : float
         Root mean square of the audible forces over the mean normal force [1].
     growth : float
         Audibility of the later half of the time over that of the earlier half [1], NaN for one frame.
     tone : float
-        Frequency of a cycle faster than the samples, else of the strongest audible tone [Hz]; NaN if there is none.
+        Pitch of the forces in bursts, or frequency of a cycle faster than the samples [Hz]; NaN if nothing is audible.
     cycle : float
-        Frequency of the slips, or of a cycle faster than the samples [Hz]; NaN for fewer than two.
+        Frequency of the cycles of stick and slip, or of a cycle faster than the samples [Hz]; NaN for fewer than two.
     periodicity : float
         Regularity of the ends of the slips [1], NaN for fewer than three.
     impact_rate, slip_rate : float
         Landings, and slips, per second [1/s].
     change_rate : float
-        Least number of cycles of changing status per second that explains the samples [1/s].
+        Least number of cycles of changing status per second that explains the samples [1/s], or their frequency in
+        bursts if they recur.
     settle_time : float
         Time, since the first sample interval, after which the status no longer changes [s]; NaN if it does.
     level, swing : float
@@ -188,10 +193,8 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
 
     normal = signals.forces[: signals.groups, first:]
     mean = math.hypot(*np.abs(normal).mean(axis=1).tolist()) or 1.0
-    sticking = together(signals.share[..., STICKING], carried)
-    noise, fastest = NOISY_STEPS * signals.step / interval, 1.0 / (limits.lowest_tone * interval)
-    found = slips(sticking[first:], noise * (1.0 + ROUND_OFF), fastest)
-    caught = found[found[:, 1] < (count - first) * (1.0 - ROUND_OFF), 1]
+    sticking = together(signals.share[first:, :, STICKING], carried)
+    slipping = StatusCycles(sticking, signals.step / interval, 1.0 / (limits.lowest_tone * interval))
     landings = None if signals.landings is None else signals.landings[first:]
     landed = landings_of(landings, signals.share[first:, :, 0])
     change_rate = cycles(status[:, first:], landed[carried > 0.0]) / time
@@ -200,15 +203,23 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     heard = _heard(signals.forces[:, heard_from:], interval, limits)
     counted = heard.later_half() if settles else heard
     audibility = counted.level / mean
-    tonality, tone, cycle = counted.tonality, float("nan"), _cycle(caught, interval)
+    recurring = 1.0 / (slipping.period * interval)
+    # Cycles that recur in bursts are faster than all changes over the time.
+    change_rate = max(change_rate, recurring) if recurring > 0.0 else change_rate
+    tonality, tone, cycle = counted.tonality, float("nan"), 1.0 / (slipping.rhythm * interval)
+    cycle = recurring if recurring > 0.0 else cycle
+    if audibility < limits.faint and recurring >= limits.lowest_tone:
+        tonality = max(tonality, slipping.recurrence)
     is_loud = audibility >= limits.faint or change_rate >= limits.lowest_tone
-    if audibility < limits.faint and np.mean(status[:, first:] == MIXED, axis=1).max() >= UNRESOLVED:
-        tonality, tone, cycle = _likeness(signals.forces[:, first:], mean), change_rate, change_rate
+    is_hidden = np.mean(status[:, first:] == MIXED, axis=1).max() >= UNRESOLVED
+    spectrum = _spectrum(signals.forces[:, heard_from:], interval, None if settles else slipping.bursts, heard, limits)
+    if audibility < limits.faint and is_hidden and spectrum.level < limits.faint * mean:
+        tonality, tone = _likeness(signals.forces[:, first:], mean), change_rate
+        if slipping.period >= SHORTEST_CYCLE:
+            tonality, tone = slipping.recurrence, recurring
+        cycle = tone
     elif is_loud or (heard.growth > 1.0 and audibility >= BUDDING * limits.faint):
-        weight = between_stops(sticking[heard_from:], _odd(SMOOTHING / interval))
-        forces = signals.forces[:, heard_from:]
-        about_the_mean = forces - (forces @ weight / weight.sum())[:, None]
-        tone = strongest_tone(weight * about_the_mean, interval, limits.frame, limits.lowest_tone)
+        tone = spectrum.pitch_among(recurring)
     elif settles and loss >= limits.lossy and swing < limits.faint:
         # A vibration that the samples do not show is at their rate, or a multiple of it.
         tonality, tone = 1.0, 1.0 / interval
@@ -222,9 +233,9 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         growth=heard.growth,
         tone=tone,
         cycle=cycle,
-        periodicity=regularity(caught),
+        periodicity=slipping.periodicity,
         impact_rate=float(landed.sum()) / time,
-        slip_rate=caught.size / time,
+        slip_rate=len(slipping.cycles) / time,
         change_rate=change_rate,
         settle_time=rest * interval if rest < count else float("nan"),
         level=math.hypot(*normal.std(axis=1).tolist()) / mean,
@@ -233,15 +244,22 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         loss=loss,
         loss_growth=loss_growth,
         last_status=int(status[:, -1].max()) if settles else MIXED,
-        slips=int(caught.size),
-        periods=prevailing(np.diff(vibrations(found, fastest), axis=1)[:, 0]) * interval * tone,
+        slips=len(slipping.caught),
+        periods=slipping.prevailing_vibration * interval * tone,
         is_short=(count - heard_from) * interval < 1.5 * limits.frame,
     )
 
 
-def _odd(width: float) -> int:
-    """Return the odd number nearest to a number of samples."""
-    return 2 * round(width / 2.0) + 1
+def _spectrum(
+    forces: Array, interval: float, bursts: Array | None, heard: Frames, limits: Thresholds
+) -> AudibleSpectrum:
+    """Return the audible spectrum of the forces in bursts, or of all where there are none or these are fainter."""
+    if bursts is not None:
+        found = audible_spectrum(forces, interval, bursts, limits.frame, limits.lowest_tone)
+        if found.level >= FAINTER * heard.level:
+            return found
+    whole = np.array([[0, forces.shape[1]]])
+    return audible_spectrum(forces, interval, whole, limits.frame, limits.lowest_tone)
 
 
 def _heard(forces: Array, interval: float, limits: Thresholds) -> Frames:
@@ -253,11 +271,6 @@ def _heard(forces: Array, interval: float, limits: Thresholds) -> Frames:
     end = forces.shape[1] // ratio * ratio
     means = np.asarray(sum(forces[:, i:end:ratio] for i in range(ratio)) / ratio)
     return frames(means, ratio * interval, limits.frame, limits.lowest_tone)
-
-
-def _cycle(caught: Array, interval: float) -> float:
-    """Return the mean frequency of slips that end at some samples [Hz], NaN for fewer than two."""
-    return (caught.size - 1) / (float(caught[-1] - caught[0]) * interval) if caught.size > 1 else float("nan")
 
 
 def _likeness(forces: Array, mean: float) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
-from .phases import ROUND_OFF, moving_mean, repeated_ends
+from .phases import ROUND_OFF, repeated_ends
 
 MIXED = -1
 
@@ -76,7 +76,8 @@ def slips(sticking: Array, noise: float, fastest: float) -> Array:
     """Return the intervals in which a contact slips, or opens, between two stick phases.
 
     A sample that sticks for a share of its interval slips next to the neighbour that sticks less. A slip that follows
-    within `fastest`, after a stick of less than a quarter of that, belongs to the same vibration.
+    within `fastest` belongs to the same slip if the stick between is chatter: shorter than a quarter of `fastest`, and
+    than a quarter of the sticks that make up half of the time of sticking.
 
     Parameters
     ----------
@@ -98,7 +99,7 @@ def slips(sticking: Array, noise: float, fastest: float) -> Array:
     if not moves.size:
         return np.empty((0, 2))
     found = _beside((ends - lengths)[moves], ends[moves])
-    firsts = _firsts(found, fastest, fastest / 4.0)
+    firsts = _firsts(found, fastest, min(fastest, prevailing(lengths[sticks])) / 4.0)
     return _merged(found, firsts)[np.add.reduceat(lengths[moves], firsts) > noise]
 
 
@@ -173,23 +174,6 @@ def _joined(sticks: Array, lengths: Array) -> tuple[Array, Array]:
     sticks, lengths = sticks[kept], lengths[kept]
     firsts = _begun(sticks[1:] != sticks[:-1])
     return sticks[firsts], np.add.reduceat(lengths, firsts)
-
-
-def between_stops(sticking: Array, width: int) -> Array:
-    """Return a weight that is 1 between stops and falls to 0 at their edges; 1 throughout if sticking always prevails.
-
-    Parameters
-    ----------
-    sticking : ndarray, shape (samples,)
-        Share of sticking in each sample.
-    width : int
-        Odd number of samples of the moving mean that defines a stop, and of the fall.
-    """
-    moves = moving_mean(sticking, width) < 0.5
-    if moves.all() or not moves.any():
-        return np.ones(sticking.size)
-    inside = np.maximum(2.0 * moving_mean(moves.astype(float), width) - 1.0, 0.0)
-    return np.asarray(inside * inside * (3.0 - 2.0 * inside))
 
 
 def prevailing(lengths: Array) -> float:

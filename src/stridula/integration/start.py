@@ -9,7 +9,7 @@ import numpy as np
 from .._kernels import layout as at
 from .._kernels.bristles import bristles_ratio, next_bristles_of_run
 from .._kernels.contact import SEPARATED, SLIDING, STICKING
-from .._kernels.friction import set_valued, sliding_ratio, state_ratio
+from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
 from .._kernels.pressing import stored_in_one
 from ..arrays import Array
 from ..checks import ArgumentError
@@ -55,7 +55,6 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
         carried[closed[:, None], [at.LAST_NORMAL, at.LAST_TANGENTIAL]] = forces
         pressed = closed[forces[:, 0] > 0.0]
         carried[pressed, at.PAST_RATIO] = 0.5 * forces[forces[:, 0] > 0.0, 1] / forces[forces[:, 0] > 0.0, 0]
-        carried[pressed, at.PAST_DRIVE] = np.nan
         carried[pressed, at.CLOSED_SHARE] = 1.0
         carried[pressed, at.STATUS] = np.where(start.slip_speeds[pressed] == 0.0, STICKING, SLIDING)
     modal, energies = np.stack([arrays.position, first]), np.zeros(at.ENERGIES)
@@ -149,7 +148,9 @@ class _Start:
             elif not set_valued(law):
                 # Signed by the sense of slip, as bristles may be bent either way.
                 sense = -1.0 if share == -1.0 else 1.0
-                found = state_ratio(law, laws, number, carried[number, at.FRICTION_STATE], sense * whole, self.step)
+                state = carried[number, at.FRICTION_STATE]
+                middle = 0.5 * (state + next_state(law, laws, number, state, whole, self.step))
+                found = state_ratio(law, laws, number, middle, sense * whole)
                 ratios[i] = found * (sense * share if whole else float(number == i))
             elif whole:
                 ratios[i] = share * sliding_ratio(law, laws, number, whole)

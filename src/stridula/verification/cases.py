@@ -18,6 +18,7 @@ from . import (
     plates,
     radiation,
     sensations,
+    shaken,
     sliders,
     sounding_spheres,
     space,
@@ -50,5 +51,6 @@ CASES: tuple[Case, ...] = (
     *radiation.CASES,
     *open_air.CASES,
     *sounding_spheres.CASES,
+    *shaken.CASES,
     *sensations.CASES,
 )
