@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stridula as st
+from stridula.linear.complementarity import all_sets, searched
 
 from .blocks import Block, random_block
 
@@ -66,3 +67,52 @@ def test_every_unique_equilibrium_of_blocks_is_found(spatial, kind):
         growth = block.growth(closed, forces)
         assert float(found.growth_rate.max()) == pytest.approx(growth, rel=1e-6, abs=1e-3)
     assert unique > 8
+
+
+@pytest.mark.parametrize("kind", ["linear", "rigid"])
+def test_several_and_no_equilibria_are_said(kind):
+    """On supports in all directions no motion is free, and every set counts."""
+    words = {}
+    for seed in range(60):
+        block = random_block(np.random.default_rng(seed), False, kind)
+        if not np.diag(block.stiffness).all():
+            continue
+        count = len(different(block))
+        found = st.sliding_stability(block.system())
+        words.setdefault(count, set()).add(found.attrs["equilibria"])
+        if count == 0:
+            assert found.attrs["equilibrium"] == "jammed"
+            assert np.isnan(found.normal_force).all()
+            assert not found.sizes["mode"]
+    assert words[1] == {"one"}
+    assert words[0] == {"none"}
+
+
+def test_given_statuses_are_judged_with_friction():
+    block = random_block(np.random.default_rng(3), False, "linear")
+    found = st.sliding_stability(block.system())
+    again = st.sliding_stability(block.system(), status=found.status.values.tolist())
+    assert (again.attrs["equilibrium"], again.attrs["violated"]) == (found.attrs["equilibrium"], "")
+    np.testing.assert_array_equal(again.normal_force, found.normal_force)
+    wrong = np.where(found.status == "sliding", "separated", "sliding").tolist()
+    assert st.sliding_stability(block.system(), status=wrong).attrs["violated"]
+
+
+def test_a_search_of_sets_solves_random_complementarity_problems():
+    """Matrices whose symmetric part is positive definite have a single solution, at any size."""
+    rng = np.random.default_rng(5)
+    for count in [*range(1, 9)] * 5 + [60]:
+        root, skew = rng.normal(size=(2, count, count))
+        matrix, free = root @ root.T + 0.1 * np.eye(count) + 2.0 * (skew - skew.T), rng.normal(size=count)
+
+        def margins(closed, matrix=matrix, free=free):
+            force = np.zeros(len(free))
+            force[closed] = np.linalg.solve(matrix[np.ix_(closed, closed)], -free[closed])
+            return np.where(closed, force, free + matrix @ force) + 1e-9
+
+        found = searched(margins, np.ones(count, dtype=bool))
+        assert found is not None
+        assert (margins(found) >= 0.0).all()
+        if count < 9:
+            (only,) = all_sets(margins, count)
+            np.testing.assert_array_equal(found, only)
