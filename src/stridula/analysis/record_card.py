@@ -121,7 +121,7 @@ def facts_of(record: xr.Dataset, system: System | None = None, level: str = ASK_
         lines |= _heard(by_point(record)) | ({"sound level": level} if level else {}) | _strings(record, system)
     if record.sizes["time"]:
         lines |= _contact(record) | _energy(record)
-    return lines | _computation(record)
+    return lines | _notes(record) | _computation(record)
 
 
 def _heard(record: xr.Dataset) -> dict[str, str]:
@@ -158,6 +158,12 @@ def _ending(record: xr.Dataset) -> dict[str, str]:
         return {}
     end = float(record["time"][-1]) if record.sizes["time"] else 0.0
     return {"ended": f"{ENDINGS[ended]} at t = {end:.6g} s"}
+
+
+def _notes(record: xr.Dataset) -> dict[str, str]:
+    """Return where the model of the system ends, nothing if it is within its limits."""
+    notes = str(record.attrs.get("notes", ""))
+    return {"notes": notes} if notes else {}
 
 
 def _computation(record: xr.Dataset) -> dict[str, str]:
