@@ -158,6 +158,7 @@ HOMES = {
     "contact": "Contacts and friction",
     "checks": "Refused arguments",
     "connections": "Connections",
+    "doubtful": "Doubtful values",
     "acoustics.levels": "Sound levels",
     "acoustics.sensation": "Psychoacoustics",
     "acoustics.listening": "Sound in notebooks",

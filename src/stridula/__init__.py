@@ -53,6 +53,7 @@ _HOME = {
     ),
     "checks": ("ArgumentError",),
     "connections": ("Dashpot", "Spring"),
+    "doubtful": ("DoubtfulValue",),
     "drives": ("Force", "Gravity", "ImposedVelocity", "InitialEquilibrium", "InitialState", "InitialVelocity"),
     "histories": ("Constant", "Harmonic", "Ramp", "Sampled"),
     "system": ("System",),

@@ -77,6 +77,7 @@ from .contact import RigidTrack as RigidTrack
 from .contact import StaticKinetic as StaticKinetic
 from .contact import Stribeck as Stribeck
 from .contact import SurfaceContact as SurfaceContact
+from .doubtful import DoubtfulValue as DoubtfulValue
 from .drives import Force as Force
 from .drives import Gravity as Gravity
 from .drives import ImposedVelocity as ImposedVelocity

@@ -47,6 +47,7 @@ def outcome(call: Callable[[], object]) -> str:
         warnings.simplefilter("error")
         # The font of figures may lack letters of a title.
         warnings.filterwarnings("ignore", "Glyph ")
+        warnings.simplefilter("ignore", st.DoubtfulValue)
         try:
             call()
         except EnoughError:

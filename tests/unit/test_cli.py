@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import tomllib
+import warnings
 
 import numpy as np
 import pytest
@@ -102,10 +103,14 @@ def test_scenarios_with_a_mark_of_their_encoding_are_read(encoding, tmp_path):
         ({"density": 7.8}, "density of 7.8 kg/m3; did you mean g/cm3?"),
         ({"section.height": 8.624}, "8.624 m thick and "),
         ({"track.length": 1360.0}, "modes below its cutoff"),
+        ({"track.length": 60.0}, "track: size of 60 m; did you mean mm?"),
     ],
 )
 def test_doubtful_values_are_named(changes, words):
-    assert any(words in line for line in doubts(st.load_scenario("squeal", changes).system))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", st.DoubtfulValue)
+        system = st.load_scenario("squeal", changes).system
+    assert any(words in line for line in doubts(system))
 
 
 def test_shipped_scenarios_raise_no_doubts_and_the_card_shows_doubts(stridula):
@@ -124,6 +129,12 @@ def test_show_reports_doubts_beside_the_text(stridula, tmp_path):
     # A scenario that cannot run can be shown.
     (tmp_path / "mine.toml").write_text('base = "squeal"\n[track]\nlength = -1\n')
     assert stridula("show", "mine.toml")[::2] == (0, "")
+
+
+def test_every_command_names_doubtful_values_once_in_a_line(stridula):
+    code, _, err = stridula("stability", "squeal", "--set", "density=7.8", "--set", "cutoff=5e3")
+    assert (code, err) == (0, "stridula: doubtful: density of 7.8 kg/m3; did you mean g/cm3?\n")
+    assert stridula("run", "squeal", *SHORT, "--set", "density=7.8", "--set", "cutoff=5e3")[2].count("doubtful") == 0
 
 
 def test_a_run_leaves_garbage_collection_on(stridula):

@@ -242,10 +242,47 @@ def surfaces(stiffness=None, **options):
 
 def test_faces_without_flexibility_are_refused_with_both_remedies_in_a_short_line():
     with pytest.raises(ValueError, match="hold the same motion twice") as caught:
-        st.sliding_stability(surfaces(), status="sliding", velocity=1.0)
+        st.sliding_stability(surfaces(), velocity=1.0)
     words = str(caught.value)
     assert words.endswith(
         "got lining; give the SurfaceContact a stiffness, or name its face in contact_faces of the body"
     )
     assert len(words) < 200
     st.sliding_stability(surfaces(1e11), velocity=1.0)
+
+
+# Values without the prefix of their unit.
+
+RECTANGLE = st.Rectangle(0.02, 0.01)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: st.Material(210.0, 7800.0), r"Young's modulus of 210 Pa; did you mean GPa\?"),
+        (lambda: st.Material(2.1e5, 7800.0), r"Young's modulus of 2.1e\+05 Pa; did you mean MPa\?"),
+        (lambda: st.Material(2.1e11, 7.8), r"density of 7.8 kg/m3; did you mean g/cm3\?"),
+        (lambda: st.HertzStiffness(0.01, 115.0), r"combined modulus of 115 Pa; did you mean GPa\?"),
+        (lambda: st.Rectangle(60.0, 1.0), r"size of 60 m; did you mean mm\?"),
+        (lambda: st.Circle(60.0), r"size of 60 m; did you mean mm\?"),
+        (lambda: st.ModalBeam(STEEL, RECTANGLE, 60.0), r"size of 60 m; did you mean mm\?"),
+        (lambda: st.FiniteElementBeam(STEEL, RECTANGLE, 60.0), r"size of 60 m; did you mean mm\?"),
+        (lambda: st.ModalPlate(STEEL, 0.01, 1.0, 60.0), r"size of 60 m; did you mean mm\?"),
+        (
+            lambda: st.AxisymmetricBody(st.RectangleProfile({"a": ((0.0, 30.0), (0.0, 5.0))}), STEEL, 100.0, orders=0),
+            r"size of 60 m; did you mean mm\?",
+        ),
+        (lambda: st.SolidMesh.block((60.0, 40.0, 10.0), (1, 1, 1)), r"size of 60 m; did you mean mm\?"),
+        (lambda: st.RigidBody(1.0, 0.1, {"tip": (0.0, -60.0, 0.0)}), r"size of 60 m; did you mean mm\?"),
+    ],
+)
+def test_values_without_their_prefix_are_named_in_a_warning_at_the_line_that_gives_them(make, words):
+    with pytest.warns(st.DoubtfulValue, match=f"^{words}$") as caught:
+        make()
+    assert {one.filename for one in caught} == {__file__}
+
+
+def test_ordinary_values_raise_no_warning():
+    st.Material(1e6, 10.0)
+    st.Material(1.2e12, 2.3e4)
+    st.ModalBeam(STEEL, RECTANGLE, 50.0)

@@ -14,6 +14,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, brief, choice, finite, instance, listed, within_a_turn
 from ..declared import CountFrom0, Each, Frequency, Number, Own, check_declared
+from ..doubtful import doubts_of_size, warn_of
 from ..histories import HISTORIES, Constant, History
 from ..ordinary import NotOrdinary, of_ordinary_size
 from .body_surfaces import HIGHEST, RingSurface, largest_part
@@ -195,6 +196,7 @@ class AxisymmetricBody(HasCard):
         sizes = (self.total_mass, *(one.young * self.mesh.size for one in self.materials.values()))
         if not all(1.0 / LARGEST < size < LARGEST for size in sizes):
             raise NotOrdinary("material and profile")
+        warn_of(doubts_of_size(self.largest_side))
 
     @property
     def materials(self) -> dict[str, Material]:
@@ -202,6 +204,12 @@ class AxisymmetricBody(HasCard):
         if isinstance(self.material, tuple):
             return dict(self.material)
         return dict.fromkeys(self.profile.region_names, self.material)
+
+    @property
+    def largest_side(self) -> float:
+        """Larger of its diameter and its height [m]."""
+        r, z = self.mesh.nodes.T
+        return max(2.0 * float(r.max()), float(np.ptp(z)))
 
     @property
     def dimensions(self) -> str:

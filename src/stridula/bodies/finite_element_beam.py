@@ -13,6 +13,7 @@ import scipy.linalg
 from ..arrays import Array, in_space
 from ..checks import ArgumentError, instance, within
 from ..declared import Angle, Choice, Count, Frequency, Length, Name, Own, check_declared
+from ..doubtful import doubts_of_size, warn_of
 from ..ordinary import check_overflow, of_ordinary_size
 from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .cards import HasCard
@@ -108,6 +109,12 @@ class FiniteElementBeam(HasCard):
         if self.elements > LARGEST_ELEMENTS:
             raise ArgumentError("elements", f"be at most {LARGEST_ELEMENTS}", self.elements)
         object.__setattr__(self, "damping", checked_damping(self.damping))
+        warn_of(doubts_of_size(self.largest_side))
+
+    @property
+    def largest_side(self) -> float:
+        """Its length [m]."""
+        return self.length
 
     @property
     def dimensions(self) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 from ..arrays import in_space
 from ..checks import ArgumentError, at_least, instance, within
 from ..declared import Count, CountFrom0, Frequency, Length, Name, Own, Tension, check_declared
+from ..doubtful import doubts_of_size, warn_of
 from ..ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
@@ -98,6 +99,7 @@ class ModalBeam(InPlane):
                 )
         check_mode_count(sum(self.harmonics), self.cutoff)
         check_damping_count(self.damping, sum(self.harmonics))
+        warn_of(doubts_of_size(self.largest_side))
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -108,6 +110,11 @@ class ModalBeam(InPlane):
     def drawn_places(self) -> Array:
         """Abscissas at which it is drawn [m], four for each half-wave of bending."""
         return places_between(self.ends, 4 * self.harmonics[0])
+
+    @property
+    def largest_side(self) -> float:
+        """Its length [m]."""
+        return self.length
 
     @property
     def dimensions(self) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, at_most, count, finite, instance, positive, within, within_a_turn
+from ..doubtful import doubts_of_size, warn_of
 from ..ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
@@ -151,6 +152,12 @@ class ModalPlate(InPlane):
         if self.line is not None:
             instance("line", self.line, Line)
             self._check_line(self.line)
+        warn_of(doubts_of_size(self.largest_side))
+
+    @property
+    def largest_side(self) -> float:
+        """Larger of length and width [m]."""
+        return max(self.length, self.width)
 
     @property
     def dimensions(self) -> str:

@@ -13,6 +13,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, instance
 from ..declared import Name, Number, Own, check_declared
+from ..doubtful import doubts_of_size, warn_of
 from .matrix_input import check_finite, numbers
 from .modes import BodyPoint, Modes
 from .named_points import NamedPoints
@@ -64,11 +65,17 @@ class RigidBody(NamedPoints):
         instance("points", self.points, Mapping)
         places = {name: _place(name, place) for name, place in self.points.items()}
         object.__setattr__(self, "points", MappingProxyType(places))
+        warn_of(doubts_of_size(self.largest_side))
 
     @property
     def point_names(self) -> tuple[str, ...]:
         """Names of its points."""
         return (CENTRE, *self.points)
+
+    @property
+    def largest_side(self) -> float:
+        """Largest extent of its points along x, y and z [m]."""
+        return float(np.ptp([(0.0, 0.0, 0.0), *self.points.values()], axis=0).max())
 
     @property
     def centre(self) -> BodyPoint:

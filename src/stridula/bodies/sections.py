@@ -8,6 +8,10 @@ from typing import Annotated, ClassVar
 
 from ..checks import ArgumentError
 from ..declared import Area, Length, Number, check_declared
+from ..doubtful import doubts_of_modulus, doubts_of_size, warn_of
+
+# From foam to osmium [kg/m3]; a value below the other is probably in t/mm3: aluminium has 2.7e-9.
+DENSITY, TONNES = (10.0, 3e4), 1e-6
 
 
 @dataclass(frozen=True)
@@ -22,6 +26,11 @@ class Material:
         Mass density [kg/m³].
     poisson : float, optional
         Poisson's ratio [1], for plates and solids; from -1 to 0.5, both excluded.
+
+    Warns
+    -----
+    DoubtfulValue
+        If Young's modulus or the density is that of no solid, as without the prefix of its unit.
     """
 
     young: Annotated[float, Number("Pa", above=0.0)]
@@ -30,6 +39,16 @@ class Material:
 
     def __post_init__(self) -> None:
         check_declared(self)
+        warn_of(self.doubts)
+
+    @property
+    def doubts(self) -> list[str]:
+        """Values that are probably mistaken, in words."""
+        found = doubts_of_modulus("Young's modulus", self.young)
+        if not DENSITY[0] <= self.density <= DENSITY[1]:
+            unit = "t/mm3, as in finite-element programs" if self.density < TONNES else "g/cm3"
+            found.append(f"density of {self.density:.4g} kg/m3; did you mean {unit}?")
+        return found
 
 
 @dataclass(frozen=True)
@@ -71,6 +90,7 @@ class Rectangle:
     def __post_init__(self) -> None:
         check_declared(self)
         _check_ordinary("width and height", self)
+        warn_of(doubts_of_size(self.largest_side))
 
     @property
     def area(self) -> float:
@@ -109,6 +129,7 @@ class Circle:
     def __post_init__(self) -> None:
         check_declared(self)
         _check_ordinary("diameter", self)
+        warn_of(doubts_of_size(self.diameter))
 
     @property
     def area(self) -> float:

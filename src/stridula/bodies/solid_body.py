@@ -237,6 +237,11 @@ class SolidBody(NamedPoints):
         return tuple(self.mesh.faces)
 
     @property
+    def largest_side(self) -> float:
+        """Largest of its sides along x, y and z [m]."""
+        return float(self.mesh.size.max())
+
+    @property
     def dimensions(self) -> str:
         """Size in words."""
         sides = " x ".join(f"{side:.4g}" for side in self.mesh.size)

@@ -17,6 +17,7 @@ import scipy.sparse
 
 from ..arrays import Array
 from ..checks import WHOLE_TURN, ArgumentError, choice, count, finite, instance, listed, positive
+from ..doubtful import doubts_of_size, warn_of
 from . import solid_files, solid_shapes
 from .matrix_input import check_finite, numbers
 from .solid_elements import check_elements
@@ -105,6 +106,7 @@ class SolidMesh:
         self._set("faces", _face_groups(self.faces, len(elements), len(self.element_kind.faces)))
         self._check_whole()
         check_elements(self.element_kind, nodes, elements)
+        warn_of(doubts_of_size(float(self.size.max())))
 
     @classmethod
     def read(cls, path: str | os.PathLike[str], scale: float = 1.0) -> SolidMesh:

@@ -10,6 +10,7 @@ from ..extras import MissingPackage, named_extras
 from .consoles import print_anything
 from .exits import BAD_INPUT, GOOD, INTERRUPTED, failed, say, terminated_as_interrupted
 from .long_tasks import tasks_shown
+from .warned import doubts_said
 
 
 def main() -> None:
@@ -29,7 +30,7 @@ def main() -> None:
 
 def _run() -> int:
     try:
-        with tasks_shown(), named_extras():
+        with tasks_shown(), doubts_said(), named_extras():
             from .commands import app
 
             result = app(standalone_mode=False)

@@ -17,6 +17,7 @@ from .card import print_card
 from .doubts import doubts
 from .exits import FAILED, INTERRUPTED, Stopped
 from .outputs import check_outputs
+from .warned import doubts_on_the_card
 
 # Ends of runs that can be heard.
 WHOLE = ("finished", "off the track")
@@ -37,7 +38,8 @@ def run_scenario(
         On Ctrl-C, or if the run failed, after the samples recorded so far are written.
     """
     check_outputs(out, plot)
-    scenario = load_scenario(name, overrides)
+    with doubts_on_the_card():
+        scenario = load_scenario(name, overrides)
     if wav is not None:
         _check_wav(wav, name, out, plot, scenario)
     try:

@@ -10,6 +10,7 @@ from typing import Annotated, Any, ClassVar, Protocol
 from ..bodies import Material
 from ..checks import instance
 from ..declared import Number, check_declared
+from ..doubtful import doubts_of_modulus, warn_of
 
 # Flexibility of a contact that does not touch yet [m/N].
 FLAT = 1e6
@@ -145,6 +146,7 @@ class HertzStiffness:
 
     def __post_init__(self) -> None:
         check_declared(self)
+        warn_of(doubts_of_modulus("combined modulus", self.modulus))
 
     @classmethod
     def between(cls, first: Material, second: Material, radius: float, damping: float = 0.0) -> HertzStiffness:

@@ -63,7 +63,7 @@ def press_and_pull(squares: int, pulled: float = PULLED) -> Found:
     near = distance < known.radius + side
     places, distance = places[near], distance[near]
     # Ball and plane are equal: twice the compliance of one.
-    material = Material(SHEAR * (1.0 + POISSON), 1.0, POISSON)
+    material = Material(SHEAR * (1.0 + POISSON), 1000.0, POISSON)
     plane = ModalBody.half_space(material, places, side, coupled=False, name="plane")
     # A mass and a damping that bring the ball to rest within a few steps without oscillation.
     rate = 1.2 / STEP

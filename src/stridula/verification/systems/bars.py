@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from math import floor, pi, sqrt
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...bodies import FiniteElementBeam, Material, Section
+from ...doubtful import DoubtfulValue
 
 # Radius of gyration over the size of an element, so small that bending does not limit the step.
 SLACK = 0.004
@@ -57,8 +59,12 @@ class Bar:
 
     def body(self, mass: str) -> FiniteElementBeam:
         """Return the bar in finite elements."""
+        # One of the bars has units of its own.
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DoubtfulValue)
+            material = Material(self.young, self.density)
         return FiniteElementBeam(
-            Material(self.young, self.density),
+            material,
             Section(self.area, self.area * (SLACK * self.length / self.elements) ** 2),
             self.length,
             elements=self.elements,
