@@ -383,7 +383,7 @@ class Touch:
         self.law = contact.friction
         self.status, self.state, self.anchor = SEPARATED, state_of_new(self.law), 0.0
         self.material = self.place = self.place_before = self.last_slip = self.past = 0.0
-        self.drive, self.rests = np.nan, False
+        self.earlier_slip, self.rests = 0.0, False
         self.normal = self.tangential = self.closed = self.gap = 0.0
         self.given = None
 
@@ -466,6 +466,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             one.status = STICKING if one.gap == 0.0 and speed == 0.0 else SEPARATED
             if one.status == STICKING:
                 one.last_slip = 0.0
+            one.earlier_slip = 3 * one.last_slip - 2 * h * speed
             one.given = None
             if has_state(one.law):
                 one.given = ratio_with_state(
@@ -548,7 +549,6 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             gap = gaps[i] + rows[2 * i] @ (q_new - trial)
             if status != SEPARATED and not isinstance(one.law, st.Coulomb):
                 free = slips[i] + rows[2 * i + 1] @ (q_new - trial) - w[1] @ [normal, -tangential]
-                one.drive_now = free + w[1, 0] * normal - one.last_slip
                 _, one.past_now, one.state_now, _, one.rests = on_its_way(
                     LAWS, one, normal, free, strayed[i], w, h, i in let_go
                 )
@@ -580,7 +580,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
                 one.anchor = one.anchor if one.rests and one.status == STICKING else material
             elif status == STICKING and one.status != STICKING:
                 one.anchor = one.material
-            one.past, one.drive = (one.past_now, one.drive_now) if on_way else (0.0, 0.0)
+            one.past, one.earlier_slip = one.past_now if on_way else 0.0, one.last_slip
             if has_state(one.law):
                 one.state = one.state_now if on_way else state_of_new(one.law)
             landings.append(int(one.status == SEPARATED and status != SEPARATED))

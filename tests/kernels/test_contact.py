@@ -35,7 +35,7 @@ def compliance(turn, flat):
 def coulomb(gap, slip, w, mu, last_slip=0.0):
     """The kernel's solve under Coulomb's law, of a contact that slid by `last_slip` in the step before."""
     laws = np.array([[mu] + [0.0] * (layout.LAW_PARAMETERS - 1)])
-    before = (float(SLIDING if last_slip else SEPARATED), last_slip, last_slip, 0.0, 0.0, 0.0, 0.0, np.nan)
+    before = (float(SLIDING if last_slip else SEPARATED), last_slip, last_slip, 0.0, 0.0, 0.0, 0.0)
     return solve_contact(gap, slip, 0.0, tuple(w.ravel()), layout.COULOMB, laws, 0, before, False, 1.0)
 
 

@@ -134,8 +134,8 @@ def _with_state(laws, before, begun, drive, pull, moved, h):
     law, state, past, grows = before.law, before.state, before.past, 0.0
     if before.status == SEPARATED:
         past = 0.5 * laws.ratio_with_state(law, state, begun / h)
-    elif not np.isnan(before.drive):
-        grows = drive - before.drive
+    elif before.normal > 0:
+        grows = drive - (before.last_slip - before.earlier_slip) - pull * before.tangential / before.normal
     u = begun - pull * past - grows / 6
     if isinstance(law, st.LuGre):
         change = (abs(drive) + pull * law.static) / (4 * law.velocity * h)

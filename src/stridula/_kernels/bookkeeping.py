@@ -172,7 +172,6 @@ def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, run
             add(state.energies, at.DRIVE_WORK, run, driven, zero)
         past, friction_state, rests = next_of(i, touch, moved, w, away, before, contacts, timing.step, run, runs, zero)
         hold(carried, i * at.CARRIED + at.PAST_RATIO, run, past)
-        hold(carried, i * at.CARRIED + at.PAST_DRIVE, run, moved[1] + w[2] * touch[0] - before[1])
         hold(carried, i * at.CARRIED + at.FRICTION_STATE, run, friction_state)
         lost = keep_forces(i, touch, moved, carried, contacts, closed, run, zero)
         keep_tangential(i, touch[1], carried, sums, run, zero)

@@ -22,7 +22,7 @@ def solve_contact(gap, slip, strayed, w, law, laws, i, before, let_go, step):
     nt, tn, tt), is the relative displacement of the tip against the track for unit forces (on the tip and its opposite
     on the track), the first index that of the displacement. The tangential force acts on the track along the tangent.
     `before` are status, slips of the last two steps, the later first, internal state, both forces of the last step, the
-    past part of the ratio and the last drive, see `slipping`. A contact that was let go is no longer held.
+    past part of the ratio, see `slipping`. A contact that was let go is no longer held.
     """
     if gap >= 0.0:
         return 0.0, 0.0, SEPARATED, False

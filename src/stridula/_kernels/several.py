@@ -103,7 +103,7 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
     forces = pair_of(now, here + at.TANGENTIAL_NOW, at.IN_STEP, run, zero)
     slips = pair_of(now, here + at.NEW_SLIP, at.IN_STEP, run, zero)
     free = pair_of(now, here + at.FREE_SLIP, at.IN_STEP, run, zero)
-    was, last, earlier, states, last_normal, last_forces, pasts, drives = carried_in_space(carried, i, run, zero)
+    was, last, earlier, states, last_normal, last_forces, pasts = carried_in_space(carried, i, run, zero)
     c, s = direction(forces, last_forces)
     before = (
         was,
@@ -113,7 +113,6 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
         last_normal,
         on(last_forces, c, s),
         on(pasts, c, s),
-        on(drives, c, s),
     )
     law = contacts.codes[i]
     store_in(i, held(now, here + at.NEW_GAP, run, zero), contacts, state, run, zero)
@@ -145,9 +144,6 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
             past, friction_state, rests = next_of(
                 i, touch, moved, w, away, before, contacts, timing.step, run, runs, zero
             )
-            drive = moved[1] + w[2] * normal - before[1]
-            hold(carried, base + at.PAST_DRIVE, run, c * drive)
-            hold(carried, base + at.CARRIED + at.PAST_DRIVE, run, s * drive)
             hold(carried, base + at.PAST_RATIO, run, c * past)
             hold(carried, base + at.CARRIED + at.PAST_RATIO, run, s * past)
             hold(carried, base + at.FRICTION_STATE, run, friction_state)

@@ -238,17 +238,16 @@ def ratio_with_state(normal, slip, w, law, laws, i, before, step):
 
     Each part takes the diagonally implicit rule of two stages and second order that forgets what a stiff contact would
     not keep: a contact that creeps takes its velocity from its friction, whatever its last one was. The drive goes on
-    through the step as it changed in the last one: a law whose velocity depends on the logarithm of the force would
-    notice its jumps.
+    through the step as it changed in the last one, in which it was the change of the slip and the ratio: a law whose
+    velocity depends on the logarithm of the force would notice its jumps.
     """
     was, last, state, past = before[0], before[1], before[3], before[6]
     pull, moved = w[3] * normal, slip + w[2] * normal
     begun, drive, grows = 0.5 * (last + moved), moved - last, 0.0
     if was == SEPARATED:
         past = 0.5 * state_ratio(law, laws, i, state, begun / step)
-    elif not math.isnan(before[7]):
-        # At the start the last drive is not known.
-        grows = drive - before[7]
+    elif before[4] > 0.0:
+        grows = drive - (last - before[2]) - pull * before[5] / before[4]
     slip_now = begun - pull * past - grows / 6.0
     count = parts_with_state(slip_now, drive, pull, law, laws, i, step)
     size, later, rest, velocity = 1.0 / count, 0.0, 0.0, slip_now / step

@@ -83,7 +83,7 @@ def next_on_way_of_run(touch, slip, strayed, w, law, laws, run, before, let_go, 
 @numba.njit(**STRICT)
 def lanes_of(values, i):
     """Return the numbers in a lane of what a contact carries."""
-    status, last, earlier, state, normal, tangential, past, drive = values
+    status, last, earlier, state, normal, tangential, past = values
     return (
         lane(status, i),
         lane(last, i),
@@ -92,7 +92,6 @@ def lanes_of(values, i):
         lane(normal, i),
         lane(tangential, i),
         lane(past, i),
-        lane(drive, i),
     )
 
 
@@ -164,7 +163,7 @@ def _overload_next_on_way(touch, slip, strayed, w, law, laws, run, before, let_g
 
 @numba.njit(**OPTIONS)
 def carried_by(carried, i, run, zero):
-    """Return status, last two slips, internal state, forces, past part of the ratio and last drive of contact `i`."""
+    """Return status, last two slips, internal state, forces and past part of the ratio of contact `i`."""
     base = i * at.CARRIED
     return (
         held(carried, base + at.STATUS, run, zero),
@@ -174,7 +173,6 @@ def carried_by(carried, i, run, zero):
         held(carried, base + at.LAST_NORMAL, run, zero),
         held(carried, base + at.LAST_TANGENTIAL, run, zero),
         held(carried, base + at.PAST_RATIO, run, zero),
-        held(carried, base + at.PAST_DRIVE, run, zero),
     )
 
 

@@ -121,7 +121,7 @@ def sliding_direction(gap, slips, w, mu, carried_on, guess):
 def solve_along(c, s, free, law, laws, number, before, let_go, step):
     """Solve a contact in space as one of the plane along a direction; `free` are gap, slips, strays and compliance."""
     gap, slips, strays, w = free
-    was, last, earlier, state, last_normal, last_forces, _, pasts, drives = before
+    was, last, earlier, state, last_normal, last_forces, _, pasts = before
     # When it is late, no reversal within the step (5d) is considered.
     was = was if let_go == 0.0 else 0.0
     return solve_one_run(
@@ -140,7 +140,6 @@ def solve_along(c, s, free, law, laws, number, before, let_go, step):
             last_normal,
             c * last_forces[0] + s * last_forces[1],
             c * pasts[0] + s * pasts[1],
-            c * drives[0] + s * drives[1],
         ),
         let_go,
         step,
@@ -195,7 +194,7 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
 
     Arguments are those of `contact.solve_contact`, with a number for each tangent; `before` are status, slips of the
     last two steps, internal states, forces of the last step, a guess of those along the tangents, the past parts of the
-    ratios and the last drives.
+    ratios.
     """
     if gap >= 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0
@@ -329,7 +328,6 @@ def solve_runs_in_space(gap, slips, strays, w, law, laws, run, before, let_go, s
                 lane_of_pair(before[5], i),
                 lane_of_pair(before[6], i),
                 lane_of_pair(before[7], i),
-                lane_of_pair(before[8], i),
             ),
             lane(let_go, i),
             step,
@@ -358,7 +356,7 @@ def carried_in_space(carried, i, run, zero):
     first, second = carried_by(carried, i, run, zero), carried_by(carried, i + 1, run, zero)
     states = first[3], second[3]
     slips = (first[1], second[1]), (first[2], second[2])
-    return first[0], *slips, states, first[4], (first[5], second[5]), (first[6], second[6]), (first[7], second[7])
+    return first[0], *slips, states, first[4], (first[5], second[5]), (first[6], second[6])
 
 
 @numba.njit(**PASTED)
@@ -374,8 +372,8 @@ def free_of_own(contacts, carried, i, run, runs, zero):
     slip = component(faces, 2 * i + 1, DISPLACEMENT, run, zero) - (w[3] * normal - w[4] * first - w[5] * second)
     swerve = component(faces, 2 * i + 3, DISPLACEMENT, run, zero) - (w[6] * normal - w[7] * first - w[8] * second)
     strays = strayed(carried, i, run, zero), strayed(carried, i + 1, run, zero)
-    was, last, earlier, states, last_normal, last_forces, pasts, drives = carried_in_space(carried, i, run, zero)
-    before = (was, last, earlier, states, last_normal, last_forces, (first, second), pasts, drives)
+    was, last, earlier, states, last_normal, last_forces, pasts = carried_in_space(carried, i, run, zero)
+    before = (was, last, earlier, states, last_normal, last_forces, (first, second), pasts)
     return (gap, (slip, swerve), strays, w, contacts.codes[i], i * runs + run, before), contacts.laws
 
 

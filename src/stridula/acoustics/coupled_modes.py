@@ -20,6 +20,11 @@ from .driven import FASTEST, Modes, respond
 
 # Off-diagonal damping, over that of the two modes, below which it is rounding.
 ROUND_OFF = 1e-12
+# Condition of eigenvectors above which two have merged, as of a critically damped mode, and the relative change of the
+# damping that parts them.
+DEFECTIVE, APART = 1e6, 1e-7
+# Samples ahead and back from which accelerations are computed.
+DEGREE = 8
 
 
 def coupled_response(stiffness: Array, dissipation: Array, forces: Array, interval: float) -> tuple[Array, int]:
@@ -65,18 +70,14 @@ def _mixed(damping: Array) -> Array:
 
 def _mixed_response(angular: Array, damping: Array, forces: Array, interval: float) -> tuple[Array, int]:
     """Return the accelerations of modes of the stiffness that damping couples, and the number of pairs left out."""
-    size = angular.size
-    matrix = np.block([[np.zeros((size, size)), np.diag(angular)], [-np.diag(angular), -damping]])
-    values, right = scipy.linalg.eig(matrix)
-    left = np.linalg.inv(right)[:, size:]
-    right = right[size:]
+    values, right, left = _eigenvectors(angular, damping)
     rising = np.flatnonzero(values.imag > 0.0)
     kept = rising[values.imag[rising] * interval < FASTEST]
     found = np.zeros_like(forces)
     poles = values[kept]
     modes = Modes(np.abs(poles), -2.0 * poles.real)
     for part, factor in ((left[kept].real, 1.0), (left[kept].imag, 1j)):
-        change, speed = (respond(modes, part @ forces, interval, derivative) for derivative in (2, 1))
+        change, speed = (respond(modes, part @ forces, interval, derivative, DEGREE) for derivative in (2, 1))
         found += 2.0 * (factor * right[:, kept] @ (change - poles.conj()[:, None] * speed)).real
     still = np.flatnonzero(values.imag == 0.0)
     still = still[np.argsort(values.real[still])]
@@ -85,6 +86,17 @@ def _mixed_response(angular: Array, damping: Array, forces: Array, interval: flo
         np.sqrt(np.maximum((values[first] * values[second]).real, 0.0)), -(values[first] + values[second]).real
     )
     for one, other in ((first, second), (second, first)):
-        change, speed = (respond(modes, left[one].real @ forces, interval, derivative) for derivative in (2, 1))
+        change, speed = (respond(modes, left[one].real @ forces, interval, derivative, DEGREE) for derivative in (2, 1))
         found += right[:, one].real @ (change - values[other].real[:, None] * speed)
     return found, int(rising.size - kept.size)
+
+
+def _eigenvectors(angular: Array, damping: Array) -> tuple[Array, Array, Array]:
+    """Return the eigenvalues [1/s] of damped modes, and the lower halves of their right and left eigenvectors."""
+    size = angular.size
+    for change in (0.0, APART):
+        lower = np.hstack([-np.diag(angular), -(1.0 + change) * damping])
+        values, right = scipy.linalg.eig(np.vstack([np.eye(size, 2 * size, size) * angular[:, None], lower]))
+        if np.linalg.cond(right) < DEFECTIVE:
+            break
+    return values, right[size:], np.linalg.inv(right)[:, size:]

@@ -176,26 +176,28 @@ class Modes:
     damping_rate: Array
 
 
-def respond(modes: Oscillators, forces: Array, interval: float, derivative: int = 2) -> Array:
+def respond(modes: Oscillators, forces: Array, interval: float, derivative: int = 2, degree: int = DEGREE) -> Array:
     """Return the accelerations of modes under impulses ``interval * forces``, shape (modes, samples).
 
-    With a `derivative` of 1 or 0, their velocities or displacements.
+    With a `derivative` of 1 or 0, their velocities or displacements. Strongly damped modes need a higher `degree`.
     """
     found = np.empty_like(forces)
-    for row, force, taps in zip(found, forces, filters(modes, interval, derivative), strict=True):
-        # The numerator reaches DEGREE samples ahead.
-        row[:] = scipy.signal.lfilter(*taps, np.pad(force, (0, DEGREE), mode="edge"))[DEGREE:]
+    for row, force, taps in zip(found, forces, filters(modes, interval, derivative, degree), strict=True):
+        # The numerator reaches this many samples ahead.
+        row[:] = scipy.signal.lfilter(*taps, np.pad(force, (0, degree), mode="edge"))[degree:]
     return found
 
 
-def filters(modes: Oscillators, interval: float, derivative: int = 2) -> list[tuple[Array, Array]]:
-    """Return for each mode the numerator and poles of its accelerations, `DEGREE` samples late, under impulses.
+def filters(
+    modes: Oscillators, interval: float, derivative: int = 2, degree: int = DEGREE
+) -> list[tuple[Array, Array]]:
+    """Return for each mode the numerator and poles of its accelerations, `degree` samples late, under impulses.
 
     With a `derivative` of 1 or 0, of its velocities or displacements.
     """
     turned = 2.0 * np.pi * np.linspace(0.0, UNDONE, FITTED + 1)[1:]
     late, angular = np.exp(-1j * turned), turned / interval
-    powers = late[:, None] ** np.arange(-DEGREE, DEGREE + 1)
+    powers = late[:, None] ** np.arange(-degree, degree + 1)
     found = []
     for own, rate in zip(modes.angular_frequency, modes.damping_rate, strict=True):
         decay = 0.5 * float(rate) * interval

@@ -55,7 +55,6 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
         carried[closed[:, None], [at.LAST_NORMAL, at.LAST_TANGENTIAL]] = forces
         pressed = closed[forces[:, 0] > 0.0]
         carried[pressed, at.PAST_RATIO] = 0.5 * forces[forces[:, 0] > 0.0, 1] / forces[forces[:, 0] > 0.0, 0]
-        carried[pressed, at.PAST_DRIVE] = np.nan
         carried[pressed, at.CLOSED_SHARE] = 1.0
         carried[pressed, at.STATUS] = np.where(start.slip_speeds[pressed] == 0.0, STICKING, SLIDING)
     modal, energies = np.stack([arrays.position, first]), np.zeros(at.ENERGIES)

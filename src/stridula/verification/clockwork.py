@@ -97,7 +97,7 @@ def extremes(time: Array, place: Array) -> tuple[Array, Array]:
 
 
 def clockwork() -> Outcome:
-    """Period and peak to peak of the cycle under seven laws at two velocities of the belt, in 50 and in 20 steps a period."""
+    """Period and swing of the cycle under seven laws at two velocities of the belt, in 50 and in 20 steps a period."""
     rows, curves, scheme = [], [], ExactModal()
     for name, law in LAWS.items():
         for belt in (0.5 * SLOWER, SLOWER) if isinstance(law, RateAndState) else (SLOWER, FASTER):

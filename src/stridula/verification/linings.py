@@ -166,7 +166,7 @@ class Lined:
         return simulate(system, periods / self.frequency, probes=probes)
 
     def cycle(self) -> tuple[float, float, float]:
-        """Return frequency [Hz] and ends of the height [m] of its cycle with lift-off, by DOP853 from event to event."""
+        """Return frequency [Hz] and ends of the height [m] of the cycle with lift-off, by DOP853 between events."""
         stiff, unit = grounded(), self.rate**2
 
         def rates(_: float, y: Array, pressed: bool) -> list[float]:

@@ -40,7 +40,7 @@ RIDER, LOAD, RIDDEN, SPEED, STIFFNESS = 0.05, 40.0, 0.13, 2.0, 2e6
 SPRING, DASHPOT = 1e6, 150.0
 LISTENERS = ((0.1, 0.05, 0.3), (0.5, -0.2, 0.6))
 # Points of Gauss along and across the surface, and interval [s] of the spline of the motion.
-POINTS, FINE = (32, 20), 4e-6
+POINTS, FINE = (48, 30), 4e-6
 
 
 @dataclass(frozen=True)
