@@ -242,7 +242,7 @@ def surfaces(stiffness=None, **options):
 
 def test_faces_without_flexibility_are_refused_with_both_remedies_in_a_short_line():
     with pytest.raises(ValueError, match="hold the same motion twice") as caught:
-        st.sliding_stability(surfaces(), status="sliding", velocity=1.0)
+        st.sliding_stability(surfaces(), velocity=1.0)
     words = str(caught.value)
     assert words.endswith(
         "got lining; give the SurfaceContact a stiffness, or name its face in contact_faces of the body"

@@ -24,6 +24,11 @@ KINDS = {
     "lifted off": "lifted off",
     "jammed": "jammed: it neither slides on nor opens",
 }
+EQUILIBRIA = {
+    "several": "Several equilibria exist; this is the one nearest to that without friction.",
+    "none": "Nothing stays at rest: the bodies move apart, or friction cannot hold them.",
+    "none found": "No equilibrium that satisfies every inequality was found.",
+}
 
 
 def print_stability(name: str, overrides: dict[str, Any], status: str | None, velocity: str | None) -> None:
@@ -81,7 +86,10 @@ def _closing(modes: xr.Dataset, given: bool) -> list[str]:
         return [*lines, f"No equilibrium to linearise about; {kind}."]
     about = " about the contacts as given" if given else ""
     growing = f"{counted(grows, 'mode')} {'grows' if grows == 1 else 'grow'}" if grows else "no mode grows"
-    return [*lines, f"Equilibrium: {kind}; {growing} (of {modes.sizes['mode']}){about}."]
+    lines.append(f"Equilibrium: {kind}; {growing} (of {modes.sizes['mode']}){about}.")
+    if modes.attrs["equilibria"] in EQUILIBRIA:
+        lines.append(EQUILIBRIA[modes.attrs["equilibria"]])
+    return [*lines, *([f"Violated: {modes.attrs['violated']}."] if modes.attrs["violated"] else [])]
 
 
 def _size(component: xr.DataArray) -> float:

@@ -41,8 +41,8 @@ class Balance:
     opening, opening_acceleration : ndarray, shape (contacts,)
         Distance of the bodies at each contact [m], below zero where they overlap, and its acceleration by free rigid
         motions [m/s²].
-    place : ndarray, shape (contacts,)
-        Displacements along the tangents [m].
+    place : ndarray, shape (2, contacts)
+        Displacements along and across the tangents [m].
     determinant : float
         Sign of the determinant of the equations, 0 if they are singular.
     displacement : ndarray, shape (modes,)
@@ -64,6 +64,22 @@ class Balance:
     displacement: Array
 
 
+@dataclass(frozen=True)
+class About:
+    """Forces about which rigid contacts are soft that hold the same motion twice.
+
+    Attributes
+    ----------
+    forces : ndarray, shape (3, contacts)
+        Forces along normals, along tangents and across them [N].
+    stays : bool
+        Whether contacts stay soft about these forces; if not, the forces approach those of rigid contacts.
+    """
+
+    forces: Array
+    stays: bool = False
+
+
 def balance_of(
     structure: Structure,
     status: Sequence[str],
@@ -72,6 +88,7 @@ def balance_of(
     anchors: Array,
     slip: Array,
     exact: bool = False,
+    about: About | None = None,
 ) -> Balance:
     """Solve for displacement, accelerations of free rigid motions and contact forces simultaneously.
 
@@ -83,16 +100,18 @@ def balance_of(
         Status of each contact.
     sense, ratio : ndarray, shape (contacts,)
         Sense of sliding, and ratio of the forces of sliding contacts [1].
-    anchors : ndarray, shape (contacts,)
-        Displacements along their tangents at which sticking contacts are held [m].
+    anchors : ndarray, shape (2, contacts)
+        Displacements along and across their tangents at which sticking contacts are held [m].
     slip : ndarray, shape (contacts,)
         Slip velocities [m/s], only passed on.
     exact : bool, optional
         Whether to compute the modal displacement, and to remove the rounding of soft supports.
+    about : About, optional
+        Forces about which rigid contacts that hold the same motion twice are soft; about none if left out.
     """
     count, share = len(status), sense * ratio
     load = structure.load - structure.damping @ structure.following(status)
-    equations, right = _tangent_equations(structure, status, share, load, anchors)
+    equations, right = _tangent_equations(structure, status, share, load, anchors, about or About(np.zeros((3, count))))
     displacement = np.zeros(0)
     if exact:
         displacement, rigid, forces = equations.exact(load, *right)
@@ -117,14 +136,14 @@ def balance_of(
         gains[count : 2 * count],
         structure.gaps + places[:count],
         gains[:count],
-        places[count : 2 * count],
+        places[count:].reshape(2, count),
         equations.determinant,
         displacement,
     )
 
 
 def at_statuses(
-    structure: Structure, velocity: Array, status: Sequence[str], exact: bool = False
+    structure: Structure, velocity: Array, status: Sequence[str], exact: bool = False, about: About | None = None
 ) -> tuple[Balance, Balance]:
     """Return the balance of forces without and with friction of sliding contacts.
 
@@ -141,14 +160,16 @@ def at_statuses(
         Status of each contact.
     exact : bool, optional
         As for `balance_of`, for the balance with friction.
+    about : About, optional
+        As for `balance_of`.
     """
     nothing = np.zeros(len(status))
-    anchors = nothing
+    anchors = np.zeros((2, len(status)))
     if STICKING in status:
         loose = [SLIDING if one == STICKING else one for one in status]
-        anchors = balance_of(structure, loose, nothing, nothing, nothing, nothing, exact).place
+        anchors = balance_of(structure, loose, nothing, nothing, anchors, nothing, exact, about).place
     slip = _slip_velocities(structure, velocity, status)
-    plain = balance_of(structure, status, np.sign(slip), nothing, anchors, slip)
+    plain = balance_of(structure, status, np.sign(slip), nothing, anchors, slip, about=about)
     least = ROUND_OFF * largest_acceleration(structure)
     moved = np.where(np.abs(plain.slip_acceleration) > least, plain.slip_acceleration, 0.0)
     slides = np.array([one == SLIDING for one in status])
@@ -158,7 +179,7 @@ def at_statuses(
         if status[number] == SLIDING:
             speed = abs(float(slip[number])) or abs(float(velocity[number]))
             ratio[number] = _ratio_at(speed, contact.friction, structure.system.contact_names[number])
-    return plain, balance_of(structure, status, sense, ratio, anchors, slip, exact)
+    return plain, balance_of(structure, status, sense, ratio, anchors, slip, exact, about)
 
 
 def _slip_velocities(structure: Structure, velocity: Array, status: Sequence[str]) -> Array:
@@ -203,35 +224,33 @@ def largest_force(structure: Structure) -> float:
 
 
 def _tangent_equations(
-    structure: Structure, status: Sequence[str], share: Array, load: Array, anchors: Array
+    structure: Structure, status: Sequence[str], share: Array, load: Array, anchors: Array, about: About
 ) -> tuple[Equations, tuple[Array, Array]]:
     """Return the equations under a load, and the values of their constraints; iterated for compliant contacts."""
     rigid, soft = np.array([structure.is_rigid(k) for k in range(len(status))]), softness(structure, status)
     response = structure.once("response", lambda: Response(structure))
-    moved = response.to(load)
-    normal = np.where(rigid, 0.0, largest_force(structure) or 1.0)
+    moved, forces = response.to(load), about.forces.copy()
+    normal = np.where(rigid, forces[0], largest_force(structure) or 1.0)
+    iterates = not rigid.all() or (soft > 0.0 and not about.stays)
     before = np.zeros(0)
-    for _ in range(1 if rigid.all() and not soft else YIELDING):
+    for _ in range(YIELDING if iterates else 1):
         give, beyond = yielding_at(structure, normal)
-        give[rigid], beyond[rigid] = soft, -soft * normal[rigid]
+        give[rigid], beyond[rigid] = soft, -soft * forces[0][rigid]
         equations = Equations(structure, status, share, give, soft)
-        closed = equations.closed
-        stays = _anchored(equations, anchors)
-        if before.size:
-            stays = stays - soft * before[len(closed) :]
+        closed, stuck, lateral = equations.closed, equations.stuck, equations.lateral
+        kept = anchors - soft * forces[1:]
+        stays = np.concatenate([kept[0, stuck], kept[1, lateral]])
         right = -structure.gaps[closed] - beyond[closed], stays
-        forces = equations.reduced(moved, *right)[0]
-        normal[closed] = forces[: len(closed)]
-        change = np.abs(forces - before).max(initial=0.0) if before.size else np.inf
-        before = forces
-        if change <= SETTLED * np.abs(forces).max(initial=0.0) or not np.isfinite(forces).all():
+        found = equations.reduced(moved, *right)[0]
+        normal[closed] = found[: len(closed)]
+        if not about.stays:
+            forces[0][closed], forces[1][stuck] = np.split(found, [len(closed), len(closed) + len(stuck)])[:2]
+            forces[2][lateral] = found[len(closed) + len(stuck) :]
+        change = np.abs(found - before).max(initial=0.0) if before.size else np.inf
+        before = found
+        if change <= SETTLED * np.abs(found).max(initial=0.0) or not np.isfinite(found).all():
             break
     return equations, right
-
-
-def _anchored(equations: Equations, anchors: Array) -> Array:
-    """Return the values of the constraints of sticking contacts along and across their tangents."""
-    return np.concatenate([anchors[equations.stuck], np.zeros(len(equations.lateral))])
 
 
 class Equations:
@@ -410,21 +429,44 @@ def held_across(structure: Structure, stuck: Sequence[int]) -> list[int]:
 
 def is_held(structure: Structure, status: Sequence[str], contact: int) -> bool:
     """Return whether the constraints of other contacts also keep a contact from slipping."""
-    held, _, closed, _ = held_rows(structure, status, np.zeros(len(status)))
-    held = held[rigid_rows(structure, closed, len(held))]
-    tangent = structure.lines[contact].tangent
-    return not tangent.any() or rank(np.vstack([held, tangent])) == rank(held)
+    return not moved_by(structure.lines[contact].tangent, motions_held(structure, status)).any()
+
+
+def motions_held(structure: Structure, status: Sequence[str]) -> Array:
+    """Return an orthonormal basis of the rows that rigid contacts and sticking ones hold, (held, modes)."""
+
+    def find() -> Array:
+        held, _, closed, _ = held_rows(structure, status, np.zeros(len(status)))
+        held = held[rigid_rows(structure, closed, len(held))]
+        return np.linalg.svd(_normalised(held), full_matrices=False)[2][: rank(held)]
+
+    return structure.once(("held", *status), find)
+
+
+def moved_by(row: Array, held: Array) -> Array:
+    """Return the part of a row, of norm 1, that held motions leave free; exactly zero if they leave none."""
+    size = float(np.linalg.norm(row))
+    if not size:
+        return np.zeros_like(row)
+    part = row / size
+    for _ in range(2):
+        part = part - held.T @ (held @ part)
+    left = float(np.linalg.norm(part))
+    return part / left if left > UNMOVED else np.zeros_like(row)
+
+
+def _normalised(rows: Array) -> Array:
+    sizes = np.linalg.norm(rows, axis=1, keepdims=True)
+    return np.asarray(rows / np.where(sizes > 0.0, sizes, 1.0))
 
 
 def rank(rows: Array) -> int:
     """Return the number of linearly independent rows; each row counts as much as the others."""
     if not len(rows):
         return 0
-    sizes = np.linalg.norm(rows, axis=1, keepdims=True)
     if len(rows) == 1:
-        return int(sizes.any())
-    found = np.linalg.svd(rows / np.where(sizes > 0.0, sizes, 1.0), compute_uv=False)
-    return int(np.sum(found >= UNMOVED))
+        return int(rows.any())
+    return int(np.sum(np.linalg.svd(_normalised(rows), compute_uv=False) >= UNMOVED))
 
 
 def softness(structure: Structure, status: Sequence[str]) -> float:

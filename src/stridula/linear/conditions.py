@@ -9,7 +9,17 @@ import numpy as np
 import scipy.linalg
 
 from ..arrays import Array
-from .balance import ROUND_OFF, Balance, held_rows, is_held, largest_acceleration, largest_force, rank, rigid_rows
+from .balance import (
+    ROUND_OFF,
+    Balance,
+    held_rows,
+    largest_acceleration,
+    largest_force,
+    motions_held,
+    moved_by,
+    rank,
+    rigid_rows,
+)
 from .response import Response
 from .structure import SEPARATED, SLIDING, STICKING, UNMOVED, Structure
 
@@ -22,7 +32,7 @@ MOST_CONTACTS = 10
 def margins_of(structure: Structure, at: Balance) -> Array:
     """Return the force of each closed contact and the gap of each open one, relative, below zero where violated.
 
-    A contact that opens by a free rigid motion has a gap in any case, one that such a motion closes has none.
+    A contact that opens by a rigid motion has a gap in any case, one that such a motion closes has none.
 
     Parameters
     ----------
@@ -32,11 +42,33 @@ def margins_of(structure: Structure, at: Balance) -> Array:
         Balance of forces.
     """
     force = max(float(np.abs(at.normal_force).max()), largest_force(structure)) or 1.0
-    length, free = _length(structure, at), largest_acceleration(structure) or 1.0
-    gains = at.opening_acceleration / free
-    gaps = np.where(np.abs(gains) > ROUND_OFF, gains, at.opening / length)
+    gaps = at.opening / _length(structure, at)
+    for motion in _opening_motions(structure, at):
+        gaps = np.where(np.abs(motion) > ROUND_OFF, motion, gaps)
     closed = np.array([one != SEPARATED for one in at.status])
     return np.where(closed, at.normal_force / force, gaps) + ROUND_OFF
+
+
+def _opening_motions(structure: Structure, at: Balance) -> tuple[Array, Array]:
+    """Return relative accelerations and velocities at which rigid motions open contacts; the latter matter more."""
+    gains = at.opening_acceleration / (largest_acceleration(structure) or 1.0)
+    rows = np.array([line.normal for line in structure.lines])
+    rates = structure.rates[1] + rows @ structure.following(at.status)
+    return gains, rates / (float(np.abs(structure.rates).max()) or 1.0)
+
+
+def is_leaving(structure: Structure, at: Balance) -> bool:
+    """Return whether a rigid motion opens a contact more and more.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    at : Balance
+        Balance of forces.
+    """
+    opened = np.array([one == SEPARATED for one in at.status])
+    return any(bool((motion[opened] > ROUND_OFF).any()) for motion in _opening_motions(structure, at))
 
 
 def _length(structure: Structure, at: Balance) -> float:
@@ -52,8 +84,11 @@ def _displacement_alone(structure: Structure) -> float:
     return float(np.abs(response.rows[: len(structure.lines)] @ response.to(structure.load)[0]).max(initial=0.0))
 
 
-def stopping(structure: Structure, at: Balance) -> int | None:
-    """Return the first sliding contact that friction stops, None if all slide on.
+def stopping(structure: Structure, at: Balance) -> list[int]:
+    """Return sliding contacts that friction stops, empty if all slide on.
+
+    A contact that friction slows down is returned alone, since others may slide on once it sticks; those that nothing
+    moves are returned together, without those that the others also hold.
 
     Parameters
     ----------
@@ -62,15 +97,25 @@ def stopping(structure: Structure, at: Balance) -> int | None:
     at : Balance
         Balance of forces.
     """
-    least = ROUND_OFF * largest_acceleration(structure)
+    least, still = ROUND_OFF * largest_acceleration(structure), list[int]()
+    held: Array | None = None
     for k, status in enumerate(at.status):
         if status != SLIDING or not at.ratio[k] > 0.0:
             continue
         gains = at.slip_acceleration[k] * at.sense[k]
-        stops = gains < -least if at.slip_velocity[k] else gains <= least
-        if stops and not is_held(structure, at.status, k):
-            return k
-    return None
+        if gains > least or (at.slip_velocity[k] and gains >= -least):
+            continue
+        held = motions_held(structure, at.status) if held is None else held
+        free = moved_by(structure.lines[k].tangent, held)
+        if not free.any() or (still and gains < -least):
+            continue
+        if gains < -least:
+            return [k]
+        still.append(k)
+        held = np.vstack([held, free])
+        across = moved_by(structure.lines[k].across, held)
+        held = np.vstack([held, across]) if across.any() else held
+    return still
 
 
 def broken(structure: Structure, at: Balance) -> list[str]:
@@ -93,13 +138,11 @@ def broken(structure: Structure, at: Balance) -> list[str]:
         elif at.opening[k] < -length:
             words.append(f"{names[k]} is open {-float(at.opening[k]):.3g} m below the surface")
         else:
-            words.append(f"{names[k]} is open, but closes by {-float(at.opening_acceleration[k]):.3g} m/s²")
+            words.append(f"{names[k]} is open, but a rigid motion closes it")
     for k, status in enumerate(at.status):
         if status != SEPARATED and structure.is_rigid(k) and abs(float(at.opening[k])) > length:
             words.append(f"{names[k]} is closed at a distance of {float(at.opening[k]):.3g} m")
-    stops = stopping(structure, at)
-    if stops is not None:
-        words.append(f"friction stops {names[stops]}")
+    words += [f"friction stops {names[k]}" for k in stopping(structure, at)]
     return words + beyond_friction(structure, at)
 
 

@@ -11,6 +11,7 @@ from ..arrays import Array
 from ..checks import ArgumentError
 from .balance import (
     ROUND_OFF,
+    About,
     Balance,
     Equations,
     at_statuses,
@@ -22,7 +23,7 @@ from .balance import (
     yielding_at,
 )
 from .complementarity import all_sets, searched
-from .conditions import broken, margins_of, slides_on, stopping
+from .conditions import beyond_friction, broken, is_leaving, margins_of, slides_on, stopping
 from .held_twice import held_twice
 from .structure import SEPARATED, SLIDING, STICKING, Structure
 
@@ -30,6 +31,8 @@ from .structure import SEPARATED, SLIDING, STICKING, Structure
 MOST_CONTACTS = 8
 # Relative difference of the forces of two equilibria below which they are the same.
 SAME = 1e-6
+# Most passes of the forces of contacts that hold the same motion twice, and their relative change that is small.
+PASSES, SETTLED = 60, 1e-10
 HELD, LIFTED_OFF, JAMMED = "held", "lifted off", "jammed"
 ONE, SEVERAL, NONE, AT_LEAST_ONE, NONE_FOUND = "one", "several", "none", "at least one", "none found"
 
@@ -62,8 +65,8 @@ class Equilibrium:
     displacement : ndarray, shape (modes,)
         Modal displacements, without those motions.
     found : str
-        Number of equilibria: ``one``, ``several`` or ``none``; ``at least one`` or ``none found`` if not all sets of
-        closed contacts were tried and no criterion decides; empty for given statuses.
+        Number of equilibria: ``one``, ``several``, or ``none`` if bodies leave or jam; ``at least one`` or ``none
+        found`` if not all sets of closed contacts were tried and no criterion decides; empty for given statuses.
     violated : tuple of str
         Inequalities that the equilibrium violates, in words; empty unless its statuses are given or it is jammed.
     """
@@ -109,12 +112,12 @@ def find_equilibrium(structure: Structure, velocity: Array, status: Sequence[str
     """
     if status is not None:
         return _judged(structure, velocity, list(status), "")
-    search = _Search(structure, velocity)
     _check_moved(structure, range(len(structure.lines)))
+    search = _Search(structure, velocity)
     chosen, found = search.result()
     if chosen is None:
         return _without(structure, found)
-    return _judged(structure, velocity, chosen, found)
+    return _judged(structure, velocity, chosen, found, search.about)
 
 
 class _Search:
@@ -122,22 +125,63 @@ class _Search:
 
     def __init__(self, structure: Structure, velocity: Array) -> None:
         self.structure, self.velocity, self.count = structure, velocity, len(structure.lines)
+        self.about: About | None = None
         self._known: dict[bytes, tuple[list[str], Balance, Balance]] = {}
 
     def result(self) -> tuple[list[str] | None, str]:
         """Return the statuses of the equilibrium, None if there is none, and the number of equilibria in words."""
-        whole = np.ones(self.count, dtype=bool)
-        first = searched(self._margins, whole)
-        if first is not None and self._is_unique():
-            return self._at(first)[0], ONE
         if self.count > MOST_CONTACTS:
-            if first is None:
-                first = self._continued()
-            return (None, NONE_FOUND) if first is None else (self._at(first)[0], AT_LEAST_ONE)
+            return self._of_many()
+        first = searched(self._margins, np.ones(self.count, dtype=bool))
+        if first is not None and self._is_unique():
+            return self._at(first)[0], ONE if self._persists(first) else NONE
         sets = self._distinct(list(all_sets(self._margins, self.count)))
         if not sets:
             return None, NONE
-        return self._at(min(sets, key=self._order))[0], ONE if len(sets) == 1 else SEVERAL
+        kept = [closed for closed in sets if self._persists(closed)]
+        return self._at(min(kept or sets, key=self._order))[0], {0: NONE, 1: ONE}.get(len(kept), SEVERAL)
+
+    def _of_many(self) -> tuple[list[str] | None, str]:
+        """Return the same with many contacts, which are searched from all closed, or from those without friction."""
+        whole = np.ones(self.count, dtype=bool)
+        if softness(self.structure, [SLIDING] * self.count):
+            _check_friction(self.structure)
+            first = self._softly(whole)
+        else:
+            first = searched(self._margins, whole)
+        if first is None:
+            start = searched(lambda closed: margins_of(self.structure, self._at(closed)[1]), whole)
+            first = None if start is None else searched(self._margins, start)
+        if first is None:
+            return None, NONE_FOUND
+        persists = self._persists(first)
+        if self._is_unique():
+            return self._at(first)[0], ONE if persists else NONE
+        return self._at(first)[0], AT_LEAST_ONE if persists else NONE_FOUND
+
+    def _softly(self, closed: Array) -> Array | None:
+        """Return a set of rigid contacts that hold the same motion twice, at first soft, then ever less.
+
+        Forces of soft contacts are unique. Those about which they are soft follow, until the contacts are rigid
+        (proximal point method, Rockafellar 1976).
+        """
+        forces, found = np.zeros((3, self.count)), None
+        for _ in range(PASSES):
+            self.about, self._known = About(forces, stays=True), {}
+            found = searched(self._margins, closed)
+            if found is None:
+                break
+            closed, at = found, self._at(found)[2]
+            before, forces = forces, np.array([at.normal_force, at.tangential_force, at.lateral_force])
+            if np.abs(forces - before).max() <= SETTLED * np.abs(forces).max():
+                break
+        self.about, self._known = About(forces), {}
+        return found
+
+    def _persists(self, closed: Array) -> bool:
+        """Return whether no contact leaves, and friction holds those that stick."""
+        at = self._at(closed)[2]
+        return not is_leaving(self.structure, at) and not beyond_friction(self.structure, at)
 
     def _at(self, closed: Array) -> tuple[list[str], Balance, Balance]:
         """Return statuses, with contacts that stop held one after the other, and balances without and with friction."""
@@ -145,11 +189,12 @@ class _Search:
         if key not in self._known:
             status = [SLIDING if one else SEPARATED for one in closed.tolist()]
             while True:
-                plain, at = at_statuses(self.structure, self.velocity, status)
+                plain, at = at_statuses(self.structure, self.velocity, status, about=self.about)
                 stops = stopping(self.structure, at)
-                if stops is None:
+                if not stops:
                     break
-                status[stops] = STICKING
+                for k in stops:
+                    status[k] = STICKING
             self._known[key] = status, plain, at
         return self._known[key]
 
@@ -171,13 +216,6 @@ class _Search:
         equations = Equations(self.structure, status, at.sense * at.ratio, np.where(linear, give, 0.0))
         return equations.is_monotone()
 
-    def _continued(self) -> Array | None:
-        """Return a set found from the one without friction, None if none was found."""
-        start = searched(
-            lambda closed: margins_of(self.structure, self._at(closed)[1]), np.ones(self.count, dtype=bool)
-        )
-        return None if start is None else searched(self._margins, start)
-
     def _distinct(self, sets: list[Array]) -> list[Array]:
         """Return sets in different places, of those in equal ones that with more closed contacts."""
         kept: list[Array] = []
@@ -196,10 +234,12 @@ class _Search:
         return jams, at.determinant != plain.determinant, wrong
 
 
-def _judged(structure: Structure, velocity: Array, status: list[str], found: str) -> Equilibrium:
+def _judged(
+    structure: Structure, velocity: Array, status: list[str], found: str, about: About | None = None
+) -> Equilibrium:
     """Return the equilibrium with some statuses, with every inequality checked."""
     _check_moved(structure, [k for k, one in enumerate(status) if one != SEPARATED])
-    plain, at = at_statuses(structure, velocity, status, exact=True)
+    plain, at = at_statuses(structure, velocity, status, exact=True, about=about)
     share = at.sense * at.ratio
     _check_determined(structure, status, share)
     violated = broken(structure, at)
@@ -209,9 +249,9 @@ def _judged(structure: Structure, velocity: Array, status: list[str], found: str
     digs_in = pulls and at.determinant != plain.determinant
     if SLIDING in status and (digs_in or not slides_on(structure, status, share)):
         kind = JAMMED
-    elif pulls or _lifted(structure, status):
+    elif pulls or is_leaving(structure, at) or _lifted(structure, status):
         kind = LIFTED_OFF
-    elif STICKING in status or stopping(structure, at) is not None:
+    elif STICKING in status or stopping(structure, at):
         kind = HELD
     else:
         kind = SLIDING
@@ -296,6 +336,12 @@ def _check_determined(structure: Structure, status: Sequence[str], share: Array)
         return
     who = [*closed, *stuck, *held_across(structure, stuck)]
     raise held_twice(structure.system, [who[row] for row in rigid])
+
+
+def _check_friction(structure: Structure) -> None:
+    """Raise if friction depends on forces that contacts share arbitrarily when all are closed and slide."""
+    ratio = [float(contact.friction.coefficient_at(1.0)) for contact in structure.system.contacts]
+    _check_determined(structure, [SLIDING] * len(ratio), np.array(ratio))
 
 
 def _check_unbraked(structure: Structure, free: Array) -> None:
