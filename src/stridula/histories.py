@@ -47,6 +47,11 @@ class Constant:
     kind: ClassVar[str] = "constant"
 
     @property
+    def largest(self) -> float:
+        """Largest size of the factor."""
+        return 1.0
+
+    @property
     def settled(self) -> float:
         """Time [s] from which it is constant: 0."""
         return 0.0
@@ -79,6 +84,11 @@ class Ramp:
 
     def __post_init__(self) -> None:
         check_declared(self)
+
+    @property
+    def largest(self) -> float:
+        """Largest size of the factor."""
+        return 1.0
 
     @property
     def settled(self) -> float:
@@ -125,6 +135,11 @@ class Harmonic:
     def __post_init__(self) -> None:
         check_declared(self)
         within_a_turn("phase", self.phase)
+
+    @property
+    def largest(self) -> float:
+        """Largest size of the factor."""
+        return abs(self.mean) + abs(self.amplitude)
 
     @property
     def settled(self) -> float | None:
@@ -197,6 +212,11 @@ class Sampled:
                 raise ArgumentError("time", allowed, self.time, got=f"{brief(self.time)}, with {got}")
         if self.time[1] == 0.0:
             raise ArgumentError("time", "be above 0 at a jump", self.time)
+
+    @property
+    def largest(self) -> float:
+        """Largest size of the factor."""
+        return max(map(abs, self.value))
 
     @property
     def settled(self) -> float:

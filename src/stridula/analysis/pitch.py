@@ -11,6 +11,8 @@ import numpy as np
 from ..arrays import Array
 from ..weighting import a_weighting
 
+# Lowest frequency of a spectrum, in lowest tones.
+BELOW = 0.75
 # Fewest samples of a frame.
 FEWEST = 8
 # Points of a spectrum per point that a frame resolves, so that a parabola finds the top of a peak.
@@ -23,6 +25,8 @@ LONGEST = 0.5
 # Difference from a multiple of the frequency of cycles up to which a tone may be a partial of these [1], and largest
 # repetition with its own period, over that with the period of the cycles, if it is [1].
 NEAR, ALONE = 0.02, 0.6
+# Difference up to which the number of the partial is certain, in points that a frame resolves.
+CERTAIN = 0.1
 # Other tones are at most this far below the strongest [dB], and stand out by this much [dB].
 DEEP, PROMINENT = 20.0, 6.0
 
@@ -34,21 +38,24 @@ class AudibleSpectrum:
     Attributes
     ----------
     frequency : ndarray, shape (frequencies,)
-        Frequencies from the lowest tone on [Hz].
+        Frequencies [Hz], from somewhat below the lowest tone on, so that its peak has both sides.
     power : ndarray, shape (frequencies,)
         Power of all forces, per point [N²].
     frame : float
         Length of the frames [s].
+    lowest : float
+        Lowest tone [Hz].
     """
 
     frequency: Array
     power: Array
     frame: float
+    lowest: float
 
     @property
     def level(self) -> float:
         """Root mean square of the forces above the lowest tone [N]."""
-        return float(np.sqrt(self.power.sum()))
+        return float(np.sqrt(self.power[self.frequency >= self.lowest].sum()))
 
     @property
     def pitch(self) -> float:
@@ -58,7 +65,7 @@ class AudibleSpectrum:
         with whose period most of the power repeats itself.
         """
         heard = self._weighted
-        tops = _tops(heard)
+        tops = self._tops(heard)
         if not tops.size:
             return float("nan")
         strong = tops[heard[tops] >= NEARLY * heard[tops].max()]
@@ -68,11 +75,17 @@ class AudibleSpectrum:
 
     def tones(self, most: int) -> Array:
         """Return the frequencies of the tones that stand out [Hz], the strongest first, at most `most` of them."""
-        tops = _tops(self.power)
+        tops = self._tops(self.power)
         order = tops[np.argsort(-self.power[tops], kind="stable")]
-        level = 10.0 * np.log10(np.maximum(self.power, 1e-30 * self.power.max(initial=1e-300)))
+        level = 10.0 * np.log10(np.maximum(self.power, 1e-30 * self.power.max(initial=0.0) + 1e-300))
         kept = [top for top in order if level[top] > level[order[0]] - DEEP and _stands_out(level, int(top))]
         return np.array([self._at(int(top)) for top in kept[:most]])
+
+    def beside(self, pitch: float, most: int) -> Array:
+        """Return the frequencies of tones that are neither a pitch nor a partial of it [Hz], the strongest first."""
+        found = self.tones(self.power.size)
+        numbers = np.maximum(np.round(found / pitch), 1.0)
+        return found[np.abs(found - numbers * pitch) > np.maximum(1.0 / self.frame, NEAR * found)][:most]
 
     def pitch_among(self, cycle: float) -> float:
         """Return the pitch of a contact whose status recurs [Hz]: that of its cycles if the tone is a partial of these.
@@ -89,11 +102,24 @@ class AudibleSpectrum:
         number = round(pitch / cycle)
         is_near = number > 1 and abs(pitch - number * cycle) <= max(0.5 / self.frame, NEAR * pitch)
         is_measured = cycle * self.frame * LONGEST >= 1.0
-        return cycle if alone < max(REPEATS, is_near * is_measured * ALONE * together) else pitch
+        if alone >= max(REPEATS, is_near * is_measured * ALONE * together):
+            return pitch
+        # The loudest part of the cycles counts for the pitch, if the number of the partial is certain.
+        is_certain = number > 1 and abs(pitch - number * cycle) <= CERTAIN / self.frame
+        return pitch / number if is_certain else cycle
 
     @cached_property
     def _weighted(self) -> Array:
-        return np.asarray(self.power * np.abs(a_weighting(self.frequency)) ** 2)
+        gain = np.abs(a_weighting(self.frequency)) * (self.frequency >= self.lowest)
+        return np.asarray(self.power * gain**2)
+
+    def _tops(self, values: Array) -> Array:
+        """Return the indices of the local maxima from the lowest tone on."""
+        rises, falls = values[1:-1] > values[:-2], values[1:-1] >= values[2:]
+        peaks = 1 + np.flatnonzero(rises & falls)
+        # The first point under the weighting is no peak of the power itself.
+        edge = np.searchsorted(self.frequency, self.lowest)
+        return peaks[(peaks > edge) | ((peaks == edge) & (self.power[peaks] > self.power[peaks - 1]))]
 
     def _repetition(self, periods: Array) -> Array:
         """Return the autocorrelation at some lags [s] over that at lag zero, without the decay of the window."""
@@ -133,7 +159,7 @@ def audible_spectrum(forces: Array, interval: float, bursts: Array, frame: float
     """
     longest = max(FEWEST, round(min(frame / interval, forces.shape[1])))
     padded = 2 ** int(np.ceil(np.log2(FINE * longest)))
-    first = int(np.ceil(lowest * padded * interval))
+    first = int(BELOW * lowest * padded * interval)
     frequency = np.arange(first, padded // 2 + 1) / (padded * interval)
     power, energy, sizes = np.zeros(frequency.size), 0.0, []
     for begin, size in _frames(bursts, longest, forces.shape[1]):
@@ -144,7 +170,7 @@ def audible_spectrum(forces: Array, interval: float, bursts: Array, frame: float
         energy += float(window @ window)
         sizes.append(size)
     length = float(np.median(sizes)) * interval if sizes else frame
-    return AudibleSpectrum(frequency, 2.0 * power / (padded * max(energy, 1e-300)), length)
+    return AudibleSpectrum(frequency, 2.0 * power / (padded * max(energy, 1e-300)), length, lowest)
 
 
 def _frames(bursts: Array, longest: int, count: int) -> Iterator[tuple[int, int]]:
@@ -169,11 +195,6 @@ def _overlap(lag: Array) -> Array:
     at = np.minimum(lag, LONGEST)
     turn = 2.0 * np.pi * at
     return np.asarray((1.0 - at) * (2.0 + np.cos(turn)) / 3.0 + np.sin(turn) / (2.0 * np.pi))
-
-
-def _tops(values: Array) -> Array:
-    """Return the indices of the local maxima, without the ends."""
-    return 1 + np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:]) & (values[1:-1] > 0.0))
 
 
 def _stands_out(level: Array, top: int) -> bool:

@@ -20,8 +20,8 @@ from ..records.checked import record
 from ..records.variables import ENERGY, STATUS_WORDS
 from ..system import System
 from .bowed import bowed_motion
-from .phases import bursts, inside
-from .regimes import LIMITS, regime_of
+from .phases import bursts
+from .regimes import LIMITS, regime_of, tones_beside
 from .several_contacts import loads, mean_shares
 from .spectra import dominant_frequency
 
@@ -121,7 +121,7 @@ def facts_of(record: xr.Dataset, system: System | None = None, level: str = ASK_
         lines |= _heard(by_point(record)) | ({"sound level": level} if level else {}) | _strings(record, system)
     if record.sizes["time"]:
         lines |= _contact(record) | _energy(record)
-    return lines | _computation(record)
+    return lines | _notes(record) | _computation(record)
 
 
 def _heard(record: xr.Dataset) -> dict[str, str]:
@@ -158,6 +158,12 @@ def _ending(record: xr.Dataset) -> dict[str, str]:
         return {}
     end = float(record["time"][-1]) if record.sizes["time"] else 0.0
     return {"ended": f"{ENDINGS[ended]} at t = {end:.6g} s"}
+
+
+def _notes(record: xr.Dataset) -> dict[str, str]:
+    """Return where the model of the system ends, nothing if it is within its limits."""
+    notes = str(record.attrs.get("notes", ""))
+    return {"notes": notes} if notes else {}
 
 
 def _computation(record: xr.Dataset) -> dict[str, str]:
@@ -248,7 +254,7 @@ def _one_contact(record: xr.Dataset) -> dict[str, str]:
     lines = {
         "regime": _regime(record),
         "normal force": _force(force),
-        "dominant frequency": _frequency(record),
+        **_tones(record),
         "status": _status(shares),
         "tip": f"from {_place(place[0])} to {_place(place[-1])} along the track",
     }
@@ -272,19 +278,26 @@ def _is_steady(heard: Array, force: Array) -> bool:
     return bool(np.ptp(heard) <= STEADY * np.abs(force).max())
 
 
+def _tones(record: xr.Dataset) -> dict[str, str]:
+    """Return the tones beside the pitch, or without a pitch the dominant frequency of the normal force."""
+    if record.sizes["time"] < 2:
+        return {}
+    pitch = float(regime_of(record)["frequency"])
+    if math.isnan(pitch):
+        return {"dominant frequency": _frequency(record)}
+    others = [f"{one:.4g} Hz" for one in tones_beside(record, pitch)]
+    where = " in the bursts" if len(bursts(record)) else ""
+    return {"other tones": f"{', '.join(others)}{where}"} if others else {}
+
+
 def _frequency(record: xr.Dataset) -> str:
-    """Return the dominant frequency of the normal force, between the stops if there are any."""
+    """Return the dominant frequency of the normal force."""
     force = record["normal_force"].values
-    if force.size < 2:
-        return "none"
-    between = bursts(record)
     # The load is applied in the first sample.
-    heard = force[inside(record, between)] if len(between) else force[1:]
-    if _is_steady(heard, force):
+    if _is_steady(force[1:], force):
         return "none, the normal force is constant"
-    frequency = dominant_frequency(record["normal_force"], between if len(between) else None)
-    where = " of the normal force" + (" between the stops" if len(between) else "")
-    return "none" if math.isnan(frequency) else f"{frequency:.4g} Hz{where}"
+    frequency = dominant_frequency(record["normal_force"])
+    return "none" if math.isnan(frequency) else f"{frequency:.4g} Hz of the normal force"
 
 
 def _regime(record: xr.Dataset) -> str:

@@ -170,6 +170,77 @@ class Measures:
     is_short: bool
 
 
+class Listened(NamedTuple):
+    """A record without the ignored beginning.
+
+    Attributes
+    ----------
+    first : int
+        First sample that counts.
+    carried : ndarray, shape (contacts,)
+        Share of the load on each contact [1].
+    status : ndarray, shape (contacts that count, samples)
+        Statuses, of the whole record.
+    rest : int
+        First sample of the last rest.
+    settles : bool
+        Whether the rest decides the regime.
+    heard_from : int
+        First sample whose forces are heard: that of the rest if it settles.
+    slipping : StatusCycles
+        Cycles of the status from the first sample on.
+    heard : Frames
+        Audible forces.
+    spectrum : AudibleSpectrum
+        Their spectrum in bursts.
+    """
+
+    first: int
+    carried: Array
+    status: Array
+    rest: int
+    settles: bool
+    heard_from: int
+    slipping: StatusCycles
+    heard: Frames
+    spectrum: AudibleSpectrum
+
+
+def _listened(signals: Signals, start: float, limits: Thresholds) -> Listened:
+    interval, count = signals.interval, signals.share.shape[0]
+    first = min(round(start / interval), count - 1)
+    carried = loads(signals.normal[first:], limits.rare)
+    status = statuses(signals.share, carried)
+    rest = last_rest(stretches(status))
+    settles = rest <= limits.rest * count
+    heard_from = min(max(first, rest), count - 1) if settles else first
+    sticking = together(signals.share[first:, :, STICKING], carried)
+    slipping = StatusCycles(sticking, signals.step / interval, 1.0 / (limits.lowest_tone * interval))
+    forces = signals.forces[:, heard_from:]
+    heard = _heard(forces, interval, limits)
+    spectrum = _spectrum(forces, interval, None if settles else slipping.bursts, heard, limits)
+    return Listened(first, carried, status, rest, settles, heard_from, slipping, heard, spectrum)
+
+
+def other_tones(signals: Signals, start: float, limits: Thresholds, pitch: float, most: int) -> Array:
+    """Return the frequencies of tones beside a pitch, and not partials of it [Hz], the strongest first.
+
+    Parameters
+    ----------
+    signals : Signals
+        Arrays of a record.
+    start : float
+        Time at the beginning that is ignored [s].
+    limits : Thresholds
+        Thresholds of settled and audible motion.
+    pitch : float
+        The pitch [Hz].
+    most : int
+        Largest number of tones.
+    """
+    return _listened(signals, start, limits).spectrum.beside(pitch, most)
+
+
 def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     """Return the measures of a run.
 
@@ -183,24 +254,15 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         Thresholds of settled, audible and tonal motion.
     """
     interval, count = signals.interval, signals.share.shape[0]
-    first = min(round(start / interval), count - 1)
-    carried = loads(signals.normal[first:], limits.rare)
-    status = statuses(signals.share, carried)
-    rest = last_rest(stretches(status))
-    settles = rest <= limits.rest * count
-    heard_from = min(max(first, rest), count - 1) if settles else first
+    first, carried, status, rest, settles, heard_from, slipping, heard, spectrum = _listened(signals, start, limits)
     time = (count - first) * interval
-
     normal = signals.forces[: signals.groups, first:]
     mean = math.hypot(*np.abs(normal).mean(axis=1).tolist()) or 1.0
-    sticking = together(signals.share[first:, :, STICKING], carried)
-    slipping = StatusCycles(sticking, signals.step / interval, 1.0 / (limits.lowest_tone * interval))
     landings = None if signals.landings is None else signals.landings[first:]
     landed = landings_of(landings, signals.share[first:, :, 0])
     change_rate = cycles(status[:, first:], landed[carried > 0.0]) / time
     loss, loss_growth = _losses(signals, heard_from)
     swing = float(np.sqrt(signals.forces[:, heard_from:].var(axis=1).sum())) / mean
-    heard = _heard(signals.forces[:, heard_from:], interval, limits)
     counted = heard.later_half() if settles else heard
     audibility = counted.level / mean
     recurring = 1.0 / (slipping.period * interval)
@@ -212,7 +274,6 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         tonality = max(tonality, slipping.recurrence)
     is_loud = audibility >= limits.faint or change_rate >= limits.lowest_tone
     is_hidden = np.mean(status[:, first:] == MIXED, axis=1).max() >= UNRESOLVED
-    spectrum = _spectrum(signals.forces[:, heard_from:], interval, None if settles else slipping.bursts, heard, limits)
     if audibility < limits.faint and is_hidden and spectrum.level < limits.faint * mean:
         tonality, tone = _likeness(signals.forces[:, first:], mean), change_rate
         if slipping.period >= SHORTEST_CYCLE:

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..arrays import Array
 from ..checks import ArgumentError, instance, listed, within
 from ..records import checked
 from ..records.by_point import by_point
 from ..records.by_surface import groups
 from ..records.plain import PlainRecord, plain_of
-from .regime_measures import BUDDING, Measures, Signals, Thresholds, measures
+from .regime_measures import BUDDING, Measures, Signals, Thresholds, measures, other_tones
 from .several_contacts import sums
 
 REGIMES = ("stable sliding", "sticking", "stick-slip", "squeal", "judder", "off the track")
@@ -51,7 +52,7 @@ MEANINGS = {
     "tonality": ("1", "share of the audible power that repeats itself"),
     "audibility": ("1", "audible forces over the mean normal force"),
     "periodicity": ("1", "regularity of the slips"),
-    "frequency": ("Hz", "frequency of the strongest tone, or of the slips"),
+    "frequency": ("Hz", "pitch of the tone, or frequency of the slips"),
     "impact_rate": ("1/s", "landings per second"),
     "slip_rate": ("1/s", "slips from one stick phase to the next, per second"),
     "settle_time": ("s", "time from which the status does not change"),
@@ -112,8 +113,9 @@ def regime(
         Scalars: ``regime``, one of `REGIMES`; ``confidence`` [1], ``0.5 + 0.5 min(1, |log2 r|)`` with r the factor by
         which the least clear of the decisive measures differs from its threshold; the shares ``separated``,
         ``sticking`` and ``sliding``; ``tonality``, ``audibility``, ``periodicity``, ``frequency``, ``impact_rate``,
-        ``slip_rate``, ``settle_time`` and ``level``. The frequency is that of the slips in stick-slip, else that of the
-        strongest tone; it is NaN if nothing is audible, and a lower bound if the cycle is faster than the samples.
+        ``slip_rate``, ``settle_time`` and ``level``. The frequency is that of the slips in stick-slip, else the pitch
+        of the forces in the bursts; it is NaN if nothing is audible, and a lower bound if the cycle is faster than the
+        samples.
 
     Raises
     ------
@@ -142,13 +144,35 @@ def regime_of(
     """
     instance("limits", limits, Thresholds)
     signals = signals_of(run)
-    length = signals.interval * signals.share.shape[0]
-    left_aside = TRANSIENT * length if start is None else within("start", start, 0.0, length)
-    found = measures(signals, left_aside, limits)
+    found = measures(signals, _left_aside(signals, start), limits)
     name, confidence = decide(found, limits, str(run.attrs.get("ended", "finished")))
     values: dict[str, float | str] = {"regime": name, "confidence": confidence}
     values["frequency"] = found.cycle if name == SLIPS else found.tone
     return values | {word: getattr(found, word) for word in MEANINGS if word not in values}
+
+
+def tones_beside(run: xr.Dataset | PlainRecord, pitch: float, most: int = 3) -> Array:
+    """Return the frequencies of the tones of the contact forces beside the pitch of a run [Hz], the strongest first.
+
+    They are sought where the pitch is, in the bursts if there are any, and are at most 20 dB weaker than the strongest.
+
+    Parameters
+    ----------
+    run : xarray.Dataset or PlainRecord
+        A record of `simulate`.
+    pitch : float
+        Its pitch [Hz], the ``frequency`` of `regime`.
+    most : int, optional
+        Largest number of tones.
+    """
+    signals = signals_of(run)
+    return other_tones(signals, _left_aside(signals, None), LIMITS, pitch, most)
+
+
+def _left_aside(signals: Signals, start: float | None) -> float:
+    """Return the time at the beginning that is ignored [s]."""
+    length = signals.interval * signals.share.shape[0]
+    return TRANSIENT * length if start is None else within("start", start, 0.0, length)
 
 
 def signals_of(run: xr.Dataset | PlainRecord) -> Signals:

@@ -14,8 +14,12 @@ from ..linear.given import Status, Velocity, given_status, given_velocity
 from ..linear.modes import exponents_alone, modes_of, round_off
 from ..linear.structure import SLIDING, Structure
 from ..linear.vibration import Exponents, vibration
+from ..lowering.model_ends import notes_of
 from ..records.variables import EQUILIBRIUM, TANGENTS, described
 from ..system import System
+
+# Time in which forces on contacts with a stiffness are expected, for notes on their frequency [s].
+AHEAD = 1.0
 
 
 def sliding_stability(
@@ -77,6 +81,7 @@ def sliding_stability(
         ``none``; ``at least one`` or ``none found`` where many contacts do not allow to try all their statuses; empty
         with `status`, as nothing is searched. ``attrs["violated"]`` has, in words, the inequalities that given statuses
         violate, such as a contact that pulls or one that is open below the surface; else it is empty.
+        ``attrs["notes"]`` has the parts that the model describes only roughly, as in a record of `simulate`.
         ``attrs["round_off"]`` is the growth rate [1/s] up to which a mode does not count as unstable.
 
     Raises
@@ -190,6 +195,7 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
             data[name] = (("contact", "tangent"), both, attributes) if several else ("tangent", both[0], attributes)
     attributes = {"equilibrium": equilibrium.kind, "equilibria": equilibrium.found}
     attributes |= {"violated": "; ".join(equilibrium.violated), "round_off": round_off(structure)}
+    attributes["notes"] = notes_of(system, structure.arrays, AHEAD)
     return xr.Dataset(data, coordinates, attributes)
 
 

@@ -66,7 +66,7 @@ STOPS = (
     TourStop(
         "Squeal",
         "Friction is 1.5, and above 1 it can hold a slider that leans by 45 degrees: the tip sticks most of the "
-        "time, and each time it lets go it excites a tone near 320 Hz. In the spectrogram each of these bursts is an "
+        "time, and each time it lets go it excites a tone near 860 Hz. In the spectrogram each of these bursts is an "
         "upright stripe.",
         "spectrogram",
         "squeal",

@@ -29,7 +29,7 @@ from .finite_elements import (
 )
 from .modes import BodyPoint, Modes, hashed_once
 from .prism_surfaces import beam_surface, has_outline
-from .sections import Circle, Material, Rectangle, Section
+from .sections import SHORTEST_WAVE, Circle, Material, Rectangle, Section
 
 LARGEST_ELEMENTS = 500
 SUPPORTS = tuple(FIXED_BY_SUPPORT)
@@ -110,6 +110,16 @@ class FiniteElementBeam(HasCard):
             raise ArgumentError("elements", f"be at most {LARGEST_ELEMENTS}", self.elements)
         object.__setattr__(self, "damping", checked_damping(self.damping))
         warn_of(doubts_of_size(self.largest_side))
+
+    @property
+    def thick_from(self) -> float:
+        """Frequency [Hz] from which it has waves of bending shorter than six depths of its section, or infinity."""
+        shortest, section = SHORTEST_WAVE * self.section.depth, self.section
+        if 2.0 * self.length / self.elements >= shortest:
+            return np.inf
+        speed = np.sqrt(self.material.young * section.second_moment / (self.material.density * section.area))
+        found = float(2.0 * np.pi / shortest**2 * speed)
+        return found if self.cutoff is None or self.cutoff > found else np.inf
 
     @property
     def largest_side(self) -> float:

@@ -21,7 +21,7 @@ from .modes import Array, BodyPoint, Modes, hashed_once
 from .paths import Path, along_one_angle
 from .planes import InPlane, checked_plane
 from .prism_surfaces import beam_surface, has_outline
-from .sections import Circle, Material, Rectangle, Section
+from .sections import SHORTEST_WAVE, Circle, Material, Rectangle, Section
 
 
 @hashed_once
@@ -110,6 +110,15 @@ class ModalBeam(InPlane):
     def drawn_places(self) -> Array:
         """Abscissas at which it is drawn [m], four for each half-wave of bending."""
         return places_between(self.ends, 4 * self.harmonics[0])
+
+    @property
+    def thick_from(self) -> float:
+        """Frequency [Hz] from which it has waves of bending shorter than six depths of its section, or infinity."""
+        harmonic = 2.0 * self.length / (SHORTEST_WAVE * self.section.depth)
+        stiff, stretched = self._of_stiffness(harmonic), self._of_tension(harmonic)
+        # The frequency of a string does not depend on its depth.
+        is_thick = self.harmonics[0] > harmonic and stiff > stretched
+        return float(self._bending(harmonic)) / (2.0 * np.pi) if is_thick else np.inf
 
     @property
     def largest_side(self) -> float:
@@ -220,15 +229,15 @@ class ModalBeam(InPlane):
     def _line_density(self) -> float:
         return self.material.density * self.section.area
 
-    def _bending(self, harmonic: int | Array) -> Array:
+    def _bending(self, harmonic: float | Array) -> Array:
         # Without tension this is exactly the frequency by stiffness alone.
         return np.asarray(np.hypot(self._of_stiffness(harmonic), self._of_tension(harmonic)))
 
-    def _of_stiffness(self, harmonic: int | Array) -> Array:
+    def _of_stiffness(self, harmonic: float | Array) -> Array:
         rigidity = self.material.young * self.section.second_moment
         return np.asarray((harmonic * np.pi / self.length) ** 2 * np.sqrt(rigidity / self._line_density))
 
-    def _of_tension(self, harmonic: int | Array) -> Array:
+    def _of_tension(self, harmonic: float | Array) -> Array:
         return np.asarray(harmonic * np.pi / self.length * np.sqrt(self.tension / self._line_density))
 
     def _axial(self, harmonic: int | Array) -> Array:

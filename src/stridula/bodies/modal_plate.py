@@ -22,7 +22,7 @@ from .paths import Path, Waves, along_one_angle
 from .plane_stress import PlaneStress, lowest, plane_stress, rigid
 from .planes import InPlane, checked_plane
 from .prism_surfaces import cells_of, plate_mesh, prism_surface
-from .sections import Material
+from .sections import SHORTEST_WAVE, Material
 
 # Largest sine or cosine of a right angle due to rounding.
 ALONG_AN_EDGE = 1e-15
@@ -153,6 +153,12 @@ class ModalPlate(InPlane):
             instance("line", self.line, Line)
             self._check_line(self.line)
         warn_of(doubts_of_size(self.largest_side))
+
+    @property
+    def thick_from(self) -> float:
+        """Frequency [Hz] from which it has waves of bending shorter than six thicknesses, or infinity."""
+        found = 2.0 * math.pi / (SHORTEST_WAVE * self.thickness) ** 2 * math.sqrt(self.rigidity / self.surface_density)
+        return found if float(self._frequency(*self.numbers.T).max()) > found else math.inf
 
     @property
     def largest_side(self) -> float:

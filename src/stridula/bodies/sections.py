@@ -70,6 +70,11 @@ class Section:
     def __post_init__(self) -> None:
         check_declared(self)
 
+    @property
+    def depth(self) -> float:
+        """Height of the rectangle with the same radius of gyration [m]."""
+        return math.sqrt(12.0 * self.second_moment / self.area)
+
 
 @dataclass(frozen=True)
 class Rectangle:
@@ -106,6 +111,11 @@ class Rectangle:
     def largest_side(self) -> float:
         """Larger side [m]."""
         return max(self.width, self.height)
+
+    @property
+    def depth(self) -> float:
+        """Side across which it bends [m]."""
+        return self.height
 
     @property
     def across(self) -> float:
@@ -147,6 +157,11 @@ class Circle:
         return self.diameter
 
     @property
+    def depth(self) -> float:
+        """Its diameter [m]."""
+        return self.diameter
+
+    @property
     def across(self) -> float:
         """Its diameter [m]."""
         return self.diameter
@@ -162,4 +177,7 @@ def _check_ordinary(sides: str, section: Rectangle | Circle) -> None:
         raise ArgumentError(sides, "be of ordinary size", got=section)
 
 
+# Shortest wave of bending that thin beams and plates have, over their depth: Euler and Bernoulli's frequency is there
+# 14 to 17 % above Timoshenko's, Kirchhoff's 14 to 18 % above Mindlin's.
+SHORTEST_WAVE = 6.0
 SECTIONS = (Rectangle, Circle, Section)

@@ -13,6 +13,7 @@ from .._kernels import layout as at
 from ..arrays import Array
 from ..lowering import Assembly
 from ..lowering.blocks import blocks_of
+from ..lowering.model_ends import notes_of
 from ..lowering.schemes import Scheme
 from ..records import Probe
 from ..records.dataset import RECORDED, over_time, to_dataset
@@ -232,6 +233,7 @@ class Run:
             "steps_per_sample": timing.ratio,
             "sample_interval": timing.interval,
             "modes": self.arrays.mode_count,
+            "notes": notes_of(self.system, self.arrays, timing.samples * timing.interval),
             "contact_tolerance": self.solve.tolerance,
             "initial_energy": self.initial_energy,
             "largest_energy": self.belief.largest_energy,

@@ -44,6 +44,7 @@ let slowest = 1; // Seconds needed to play one second, 1 if it keeps up with the
 let revision = 0;
 let begun = 0; // The revision at which the motion began.
 let heardLast; // Source of the last part.
+let pitch = null; // Pitch of the present motion [Hz], null if it has none.
 let mode = "live";
 let skipped = false;
 let badLink = false;
@@ -181,8 +182,9 @@ function offer({ sources: offered, source }) {
   showSource();
 }
 
-// The present motion as text, and its note.
+// The present motion as text, its pitch and its note.
 function goesOn({ words, regime, frequency }) {
+  pitch = frequency;
   write("now", words);
   write("note", ["squeal", "stick-slip"].includes(regime) && frequency >= LOWEST ? reading(frequency, pictures.modes) : "");
 }
@@ -589,8 +591,9 @@ setInterval(() => {
   stats.fps = stats.frames;
   stats.frames = 0;
   $("fps").textContent = stats.fps;
-  const tone = pictures.tone;
-  $("tone").textContent = tone ? `strongest tone ${tone < 1000 ? `${Math.round(tone)} Hz` : `${(tone / 1000).toFixed(2)} kHz`}` : "";
+  // The strongest tone of the sound may be another than the pitch of the run, so it is named only without one.
+  const [word, tone] = pitch ? ["pitch", pitch] : ["strongest tone", pictures.tone];
+  $("tone").textContent = tone ? `${word} ${tone < 1000 ? `${Math.round(tone)} Hz` : `${(tone / 1000).toFixed(2)} kHz`}` : "";
 }, 1000);
 
 window.stridula = { fallBehind, follow, keepUp, loop, space, stats, late: () => sound.late, shares: () => pictures.shares, scene, slots, now: () => described };
