@@ -15,8 +15,7 @@ def different(block: Block) -> list:
     """Return the equilibria by hand that are in different places."""
     kept: list = []
     for one in block.equilibria():
-        moved = block.normal @ one[1]
-        if not any(np.abs(moved - block.normal @ other[1]).max() <= 1e-6 * np.abs(moved).max() for other in kept):
+        if not any(np.abs(one[1] - other[1]).max() <= 1e-6 * np.abs(one[1]).max() for other in kept):
             kept.append(one)
     return kept
 
@@ -116,3 +115,39 @@ def test_a_search_of_sets_solves_random_complementarity_problems():
         if count < 9:
             (only,) = all_sets(margins, count)
             np.testing.assert_array_equal(found, only)
+
+
+def resting(stiffness: float | None, velocity: float = 0.0) -> st.System:
+    """Return an elastic block of second order, pressed on a floor or on a belt."""
+    steel = st.Material(2.1e11, 7800.0, 0.3)
+    body = st.SolidBody.block((0.06, 0.03, 0.04), (2, 1, 2), steel, cutoff=30e3, contact_faces=["bottom"], name="block")
+    face = st.SurfaceContact(
+        body, "bottom", st.RigidTrack(velocity=velocity), friction=st.Coulomb(0.3), stiffness=stiffness, name="face"
+    )
+    top = body.face_points("top")
+    shares = top.area / top.area.sum()
+    loads = [
+        st.Force(body.at(place), y=-21.0 * share)
+        for place, share in zip(top.place.tolist(), shares.tolist(), strict=True)
+    ]
+    springs = [st.Spring(body.at(top.place[k].tolist()), stiffness=1e7, direction=way) for k in (0, -1) for way in "xz"]
+    return st.System(face, loads, springs)
+
+
+@pytest.mark.parametrize("stiffness", [1e12, None])
+def test_a_face_at_rest_pulls_nowhere_along_the_floor(stiffness):
+    """It is held where it rests without friction, along both tangents, under its Poisson strain too."""
+    found = st.sliding_stability(resting(stiffness))
+    assert (found.attrs["equilibrium"], found.attrs["violated"]) == ("held", "")
+    assert float(found.normal_force.sum()) == pytest.approx(21.0)
+    assert np.abs(found.tangential_force).max() < 1e-9
+
+
+def test_a_rigid_face_is_the_limit_of_a_stiff_one():
+    """Points of second-order elements hold the same motion twice; sums and modes do not depend on how they share it."""
+    rigid, stiff = (st.sliding_stability(resting(one, 1.0)) for one in (None, 1e17))
+    assert rigid.attrs["violated"] == ""
+    assert (rigid.normal_force >= 0.0).all()
+    assert float(rigid.normal_force.sum()) == pytest.approx(21.0)
+    moved = [one.tip_displacement.sel(direction="x").values for one in (rigid, stiff)]
+    np.testing.assert_allclose(moved[0], moved[1], rtol=1e-3)
