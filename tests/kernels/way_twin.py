@@ -86,7 +86,7 @@ def _part(way, u, rate, ratio):
 
 
 def _slide(way, u, begin, drive, sense):
-    """Slide from `begin` on by the method of Runge and Kutta; return both parts of the ratio and the share in which it sticks."""
+    """Slide from `begin` on by the method of Runge and Kutta; return both parts of the ratio and the share of stick."""
     later, past, pull = 0.0, 0.0, way.pull
     held = way.laws.held_up_to(way.law, True)
     for _ in range(3):

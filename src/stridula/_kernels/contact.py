@@ -43,7 +43,7 @@ def solve_contact(gap, slip, strayed, w, law, laws, i, before, let_go, step):
 
 @numba.njit(**STRICT)
 def ratio_under(normal, slip, strayed, w, law, laws, i, before, let_go, step):
-    """Return the ratio of forces over a step under a normal force, its past part, the new state, status, share of stick.
+    """Return the ratio of forces over a step under a normal force, its past part, new state, status and stuck share.
 
     See `slipping`.
     """

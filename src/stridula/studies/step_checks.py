@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ import xarray as xr
 
 from ..analysis import regime
 from ..arrays import Array
-from ..checks import ArgumentError, between
+from ..checks import ArgumentError
 from ..integration import Diverged
 from ..records import checked
 from ..records.changes import played
@@ -60,8 +61,10 @@ class Moved:
     def __str__(self) -> str:
         """Return the result in words."""
         if math.isnan(self.value) or math.isnan(self.finer):
-            words = ["none" if math.isnan(number) else f"{number:.4g} {self.units}" for number in (self.value, self.finer)]
-            return f"{self.name} {words[0]}, {words[1]} at half the step"
+            at_step, at_half = (
+                "none" if math.isnan(number) else f"{number:.4g} {self.units}" for number in (self.value, self.finer)
+            )
+            return f"{self.name} {at_step}, {at_half} at half the step"
         if self.name == "level":
             return f"{self.name} {self.change:+.2g} dB"
         change = f"{self.change:+.2g}" if self.units == "1" else f"{100.0 * self.change:+.2g} %"
@@ -82,8 +85,8 @@ class StepCheck:
     parted : float
         Time from which the forces of both differ by a tenth of their fluctuation [s]; infinite if they never do.
     moved : tuple of Moved
-        Results of both: frequency, level, shares of the states and, of a vibration that grows, its growth; over the whole
-        time.
+        Results of both over the whole time: frequency, level, shares of the states and, of a vibration that grows, its
+        growth.
     before : tuple of Moved
         The same over the time before the runs part; empty if they do not, or do so at once.
     finer : xarray.Dataset
@@ -151,10 +154,10 @@ def check_step(run: xr.Dataset, **kwargs: Any) -> StepCheck:
     ValueError
         If the record continues another one, was changed while it ran or has fewer than two samples.
     """
-    checked("run", run)
-    interval = float(run.attrs["sample_interval"])
-    if run.sizes["time"] < 2 or float(run["time"].values[0]) > 1.5 * interval:
-        raise ArgumentError("run", "be a record from the start with two samples", run, got="another one")
+    checked.record("run", run, "normal_force", "tangential_force", "status_share", least=2)
+    interval, since = float(run.attrs["sample_interval"]), float(run["time"].values[0])
+    if since > 1.5 * interval:
+        raise ArgumentError("run", "begin at its start", run, got=f"one that goes on from {since - interval:.6g} s")
     if played(run):
         raise ArgumentError("run", "have one scenario throughout", run, got="one that was changed while it ran")
     step = float(run.attrs["step"])
@@ -171,14 +174,14 @@ def held_against(run: xr.Dataset, finer: xr.Dataset) -> StepCheck:
     shared = min(run.sizes["time"], finer.sizes["time"])
     pair = run.isel(time=slice(shared)), finer.isel(time=slice(shared))
     until = _parting(*(_forces(one) for one in pair))
-    whole, before = _results(*pair), ()
+    before: tuple[Moved, ...] = ()
     if 2 * FEWEST <= until < shared:
         before = _results(*(one.isel(time=slice(until)) for one in pair))
     return StepCheck(
         step=float(run.attrs["step"]),
         regimes=(_regime(pair[0]), _regime(pair[1])),
         parted=math.inf if until == shared else float(run["time"].values[until]),
-        moved=whole,
+        moved=_results(*pair),
         before=before,
         finer=finer,
     )
@@ -194,6 +197,11 @@ def _forces(run: xr.Dataset) -> Array:
     return np.concatenate([column.reshape(len(column), -1).T for column in columns])
 
 
+def _fluctuation(forces: Array) -> float:
+    """Return the root mean square of all forces about their means [N]."""
+    return float(np.sqrt(np.sum(np.var(forces, axis=1))))
+
+
 def _windows(samples: int) -> Array:
     """Return the ends of windows of equal lengths."""
     return np.unique(np.linspace(0, samples, min(WINDOWS, samples) + 1).astype(int))
@@ -203,8 +211,8 @@ def _parting(forces: Array, finer: Array) -> int:
     """Return the sample from which two runs differ, their number of samples if they never do."""
     samples = forces.shape[1]
     ends = _windows(samples)
-    largest = float(np.sqrt(np.sum(np.var(finer, axis=1))))
-    for begin, end in zip(ends[:-1], ends[1:], strict=True):
+    largest = _fluctuation(finer)
+    for begin, end in pairwise(ends):
         apart = float(np.sqrt(np.sum(np.mean((forces[:, begin:end] - finer[:, begin:end]) ** 2, axis=1))))
         if apart > PARTED * largest:
             return int(begin)
@@ -219,17 +227,18 @@ def _results(run: xr.Dataset, finer: xr.Dataset) -> tuple[Moved, ...]:
         value, half = found[0][name], found[1][name]
         if name == "growth" and math.isnan(value) and math.isnan(half):
             continue
-        change = value - half if units == "dB" else (value - half) / half if half else math.nan
-        moved.append(Moved(name, units, value, half, -change, allowed))
-    moved += [Moved(name, "1", found[0][name], found[1][name], found[1][name] - found[0][name], SHARE) for name in SHARES]
+        moved.append(Moved(name, units, value, half, half - value if units == "dB" else half / value - 1.0, allowed))
+    for name in SHARES:
+        value, half = found[0][name], found[1][name]
+        moved.append(Moved(name, "1", value, half, half - value, SHARE))
     return tuple(moved)
 
 
 def _measured(run: xr.Dataset) -> dict[str, float]:
     """Return frequency, level and growth of the forces of a run, and shares of the states."""
     of_regime, forces = regime(run), _forces(run)
-    spread = float(np.sqrt(np.sum(np.var(forces, axis=1))))
-    level = 20.0 * math.log10(spread) if spread > 0.0 else -math.inf
+    spread = _fluctuation(forces)
+    level = 20.0 * math.log10(spread) if spread > 0.0 else math.nan
     numbers = {name: float(of_regime[name]) for name in ("frequency", *SHARES)}
     return {**numbers, "level": level, "growth": growth_of(forces, float(run.attrs["sample_interval"]))}
 
@@ -242,7 +251,7 @@ def growth_of(forces: Array, interval: float) -> float:
     ends = _windows(forces.shape[1])
     if ends.size <= FEWEST or np.diff(ends).min() < 4:
         return math.nan
-    spread = np.array([np.sqrt(np.sum(np.var(forces[:, a:b], axis=1))) for a, b in zip(ends[:-1], ends[1:], strict=True)])
+    spread = np.array([_fluctuation(forces[:, begin:end]) for begin, end in pairwise(ends)])
     if not np.all(spread > 0.0):
         return math.nan
     time, heights = 0.5 * (ends[:-1] + ends[1:]) * interval, np.log(spread)
