@@ -142,6 +142,14 @@ def test_a_run_leaves_garbage_collection_on(stridula):
     assert gc.isenabled()
 
 
+def test_run_checks_its_step(stridula):
+    """With half the step in the words."""
+    code, out, err = stridula("run", "squeal", *SHORT, "--check-step")
+    assert (code, err) == (0, "")
+    assert "at half the step, 2.5e-06 s: " in out
+    assert "the step is fine enough for these results" in out
+
+
 def test_run_writes_record_and_figure_and_reports_the_result(stridula, tmp_path):
     code, out, err = stridula("run", "squeal", *SHORT, "--set", "friction=0.4", "--out", "run.nc", "--plot", "run.png")
     assert (code, err) == (0, "")
