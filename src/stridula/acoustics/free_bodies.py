@@ -3,28 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from ..arrays import Array, in_space
-from ..bodies import Modes
+from ..bodies import Modes, is_track
 from ..checks import ArgumentError, listed
 from ..lowering import assemble
 from ..places import origins_in_space
 from ..records.checked import record
 from ..system import System
 from .air import Air
+from .carried import carried_sound, is_carried
 from .convolution import Convolution
 from .delays import Response, Sampling
 from .driving import starts_are_heard
 from .listeners import HEIGHT, SPACING, listeners_of
-from .panels import is_flat
+from .moments import moment_note
+from .open_surfaces import Heard
+from .panels import is_flat, line_of, panel_of
+from .recorded import along_track
 from .recorded_motion import at_one_rate, recorded_motion
 from .redriven import Moved, redriven
 from .resampling import bandwidth_of, ratio_of, resample
-from .sounding import Sounding, sounding_of, wall_of
+from .slim_beams import SlimBeam
+from .sounding import Sounding, Wall, line_in_space, sounding_of, wall_of
 from .travels import travel_note, travel_of
 
 
@@ -71,9 +77,55 @@ def free_sound(
         listener,
         air,
         sample_rate,
+        lambda name, sent, heard: _unheard(run, system, name, sent, heard),
     )
+    for body, one in zip(heard, sounding, strict=True):
+        if is_carried(system, body):
+            line = line_in_space(body, True, origins[body] + travel_of(run, system, body)[0])
+            carried = _carried(line, system, places, wall_of(sounding), air, motions[one.name], sample_rate)
+            if one.is_line:
+                pressure += carried
+            else:
+                slid.append(_rigid_note(one.name, carried[0], pressure[0]))
     notes = [attributes["notes"], *slid, *lacks(system, heard, silent, motions.values())]
     return pressure, time, places, attributes | {"notes": "; ".join(filter(None, notes))}
+
+
+def _unheard(run: xr.Dataset, system: System, name: str, sent: Heard, pressure: Array) -> list[str]:
+    """Return notes on the moments of friction on a body, from its modes that sound and the sound at a listener."""
+    body = next(body for body in system.bodies if system.body_name(body) == name)
+    if not is_track(body) or not sent.numbers.size or all(one.path_body != body for one in system.contacts):
+        return []
+    track: Any = body
+    panel = panel_of(track) if hasattr(track, "track_line") else line_of(track)
+    bending = np.flatnonzero(sent.numbers < len(panel.wavenumbers))
+    first = replace(sent.responses[0], taps=sent.responses[0].taps[:, bending])
+    notes = moment_note(along_track(run, system, body), body, panel.only(sent.numbers[bending]), first, pressure)
+    return [f"{name}: {note}" for note in notes]
+
+
+def _carried(
+    line: SlimBeam,
+    system: System,
+    places: Array,
+    wall: Wall | None,
+    air: Air,
+    moved: Moved,
+    sample_rate: float | None,
+) -> Array:
+    """Return the sound of a beam that moves with its root, as a line, and that of its image."""
+    recorded = 1.0 / moved.interval
+    ratio = ratio_of(sample_rate, recorded, moved.samples)
+    images = [places] if wall is None else [places, wall.images(places)]
+    sounds = [carried_sound(line, system, one, air, moved, bandwidth_of(ratio, recorded)) for one in images]
+    return resample(np.sum(sounds, axis=0), ratio)
+
+
+def _rigid_note(name: str, carried: Array, heard: Array) -> str:
+    """Return a note on the sound of a beam that moves with its root, which is left out."""
+    left_out, level = (float(np.sqrt(np.mean(one**2))) for one in (carried, heard))
+    words = f"{20.0 * np.log10(left_out / level):.0f} dB relative to what is heard" if level else f"{left_out:.2g} Pa"
+    return f"{name}: changes of its imposed velocity are heard by its vibration alone, not as a whole: about {words}"
 
 
 def _motions(run: xr.Dataset, system: System, bodies: Sequence[Any]) -> dict[str, Moved]:
@@ -91,12 +143,14 @@ def bodies_sound(
     listener: Any,
     air: Air,
     sample_rate: float | None,
+    unheard: Callable[[str, Heard, Array], list[str]] | None = None,
 ) -> tuple[Array, Array, Array, dict[str, Any], dict[str, Moved]]:
     """Return pressures (listeners, samples), their times, the listeners, attributes and the motion of each body.
 
     All motions have the samples of one record. If `listener` is None, two ears are taken: above the middle of the
     bodies along the first direction of `above`, side by side along the second one. Bodies in front of a baffle are
-    heard by the listeners and by their images in it.
+    heard by the listeners and by their images in it. `unheard` takes the name of a body, its responses and the sound at
+    the first listener; it returns notes on missing parts.
 
     Raises
     ------
@@ -114,6 +168,7 @@ def bodies_sound(
     pressure, modes = np.zeros((len(places), moved.samples)), 0
     notes: list[str] = []
     errors: list[float] = []
+    every = {}
     for one in heard:
         moved = motions[one.name]
         first, last = moved.spans[one.name]
@@ -124,9 +179,12 @@ def bodies_sound(
         if sent.numbers.size:
             signals = convolved(sent.responses, moved, first + sent.numbers)
             pressure += signals.reshape(-1, *pressure.shape).sum(axis=0)
+        every[one.name] = sent
         notes += sent.notes
         errors.append(sent.error)
         modes += int(sent.numbers.size)
+    if unheard is not None and pressure[0].any():
+        notes += [note for name, sent in every.items() for note in unheard(name, sent, pressure[0])]
     sounding = resample(pressure, ratio)
     times = np.arange(sounding.shape[1]) * moved.interval / float(ratio)
     arrival = distances.min(axis=0) / air.speed
@@ -209,9 +267,6 @@ def lacks(system: System, heard: Sequence[Any], silent: Sequence[str], motions: 
         notes.append(f"not included, without a surface: {listed(silent)}")
     moved = next((one for one in motions if not one.is_recorded), None)
     notes += ends_of({system.body_name(body): body.modes(system.is_held(body)) for body in heard}, moved)
-    imposed = system.imposed_velocity
-    if imposed is not None and imposed.point.body in heard and imposed.history.kind != "constant":
-        notes.append(f"{system.body_name(imposed.point.body)}: changes of its imposed velocity are not included")
     if moved is None:
         return notes
     if moved.start > 0.5 * moved.interval:

@@ -75,6 +75,7 @@ class OpenSurface:
 
     most: ClassVar[float] = HIGHEST
     wall: ClassVar[None] = None
+    is_line: ClassVar[bool] = False
     name: str
     surface: BodySurface
     numbers: Array

@@ -19,10 +19,12 @@ from ..lines import Outline, outlines_of
 from ..records.checked import record
 from ..system import System
 from .air import Air
+from .carried import carried_sound, is_carried
 from .delays import Sampling
 from .free_bodies import chosen, convolved, lacks
 from .listeners import HEIGHT, SPACING, check_in_front, ears, listeners_of
 from .panels import panel_of
+from .recorded import along_track
 from .recorded_motion import at_one_rate, recorded_motion
 from .redriven import redriven
 from .resampling import bandwidth_of, ratio_of, resample
@@ -178,7 +180,7 @@ def _of_track(
     sample_rate: float | None,
 ) -> Part:
     name, starts = system.body_name(track), system.initial_equilibrium is not None
-    pressing = _on_it(run, system, track)
+    pressing = along_track(run, system, track)
     if starts:
         # It has been in equilibrium before.
         pressing = pressing.assign(normal_force=pressing["normal_force"] - pressing["normal_force"].isel(time=0))
@@ -197,17 +199,6 @@ def _of_track(
         (lambda: TrackMotion(run, system, track)) if otherwise else None,
     )
     return pressure, time, attributes
-
-
-def _on_it(run: xr.Dataset, system: System, track: Any) -> xr.Dataset:
-    """Return the contacts of a record that move along a track."""
-    numbers = [number for number, contact in enumerate(system.contacts) if contact.path_body == track]
-    if "contact" not in run.dims:
-        return run
-    names, shown = [system.contact_names[number] for number in numbers], run["contact"].values.tolist()
-    if not set(shown) & set(system.contact_names):
-        return run.isel(contact=numbers)
-    return run.sel(contact=[name for name in names if name in shown])
 
 
 def _of_beams(
@@ -240,9 +231,12 @@ def _of_beams(
         frame, origin = np.array([along, [0.0, 1.0, 0.0], across]), np.array([x + travel[0], 0.0, y + travel[1]])
         beam = slim_beam(body, system.is_held(body), numbers - first, frame, origin)
         distances.append(beam.distances(seen))
-        for places in images if numbers.size else []:
-            responses = beam.responses(places, air, Sampling(moved.interval, bandwidth, shift))
-            pressure += convolved(responses, moved, numbers)
+        for places in images:
+            if numbers.size:
+                responses = beam.responses(places, air, Sampling(moved.interval, bandwidth, shift))
+                pressure += convolved(responses, moved, numbers)
+            if is_carried(system, body):
+                pressure += carried_sound(beam, system, places, air, moved, bandwidth)
         name = system.body_name(body)
         notes += [line_note(name, body, air), *travel_note(name, reach)]
     sounding = resample(pressure, ratio)

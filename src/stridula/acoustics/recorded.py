@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -10,6 +11,7 @@ import xarray as xr
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, at_most, count
 from ..records.checked import record
+from ..system import System
 from .panels import Panel
 
 # Share of the impulse of the first step that lies before the start of a run.
@@ -75,6 +77,17 @@ def pressing(run: xr.Dataset, panel: Panel) -> Pressing:
     return Pressing(start, interval, steps, force, middle)
 
 
+def along_track(run: xr.Dataset, system: System, track: Any) -> xr.Dataset:
+    """Return the contacts of a record that move along a track."""
+    numbers = [number for number, contact in enumerate(system.contacts) if contact.path_body == track]
+    if "contact" not in run.dims:
+        return run
+    names, shown = [system.contact_names[number] for number in numbers], run["contact"].values.tolist()
+    if not set(shown) & set(system.contact_names):
+        return run.isel(contact=numbers)
+    return run.sel(contact=[name for name in names if name in shown])
+
+
 def sampled(run: xr.Dataset, *names: str) -> tuple[float, float, int, list[Array]]:
     """Return the begin of the first sample interval, its length [s], the steps in it, and variables of contacts.
 
@@ -112,7 +125,7 @@ def _by_contact(signal: xr.DataArray) -> Array:
 def _check_on_track(position: Array, panel: Panel) -> None:
     # The tip of a run that left the track is at most one step beyond its end.
     slack = 1e-3 * (panel.ends[1] - panel.ends[0])
-    low, high = float(position.min()), float(position.max())
+    low, high = float(position.min(initial=panel.ends[1])), float(position.max(initial=panel.ends[0]))
     if low < panel.ends[0] - slack or high > panel.ends[1] + slack:
         worst = low if low < panel.ends[0] - slack else high
         raise ArgumentError(

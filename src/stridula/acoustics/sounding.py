@@ -49,7 +49,15 @@ class Wall:
 
 
 class Sounding(Protocol):
-    """A body in space as a source of sound."""
+    """A body in space as a source of sound.
+
+    Attributes
+    ----------
+    is_line : bool
+        Whether it is a line of dipoles.
+    """
+
+    is_line: ClassVar[bool]
 
     @property
     def name(self) -> str:
@@ -88,6 +96,7 @@ class Slim:
 
     most: ClassVar[float] = np.inf
     wall: ClassVar[None] = None
+    is_line: ClassVar[bool] = True
     name: str
     beam: SlimBeam
 
@@ -126,6 +135,7 @@ class Flat:
         Place in the world where its x, y and z are zero [m].
     """
 
+    is_line: ClassVar[bool] = False
     name: str
     way: Way
     frame: Array

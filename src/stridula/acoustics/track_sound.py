@@ -16,6 +16,7 @@ from .convolution import Convolution
 from .delays import Response, Sampling
 from .driven import DrivenModes
 from .listeners import ears, listeners_of
+from .moments import moment_note
 from .panels import Panel
 from .recorded import pressing
 from .recorded_motion import recorded_modes
@@ -78,7 +79,11 @@ def track_sound(
         check_one_track(run)
         return found
 
-    return panel_sound(moved, track, listener, baffled, air, sample_rate, silence)
+    def unheard(panel: Panel, response: Response, pressure: Array) -> list[str]:
+        notes = moment_note(run, track, panel, response, pressure)
+        return notes if name is None else [f"{name}: {note}" for note in notes]
+
+    return panel_sound(moved, track, listener, baffled, air, sample_rate, silence, unheard)
 
 
 def panel_sound(
@@ -89,10 +94,12 @@ def panel_sound(
     air: Air,
     sample_rate: float | None,
     silence: tuple[str, str],
+    unheard: Callable[[Panel, Response, Array], list[str]] | None = None,
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
     """Return the sound of a track; `moved` takes its panel and returns its motion.
 
-    Other arguments, results and errors are those of `track_sound`.
+    `unheard` takes the modes heard, their responses at the first listener and the sound there; it returns notes. Other
+    arguments, results and errors are those of `track_sound`.
     """
     way = way_of(track, baffled)
     listeners = listeners_of(ears(track) if listener is None else listener)
@@ -114,6 +121,8 @@ def panel_sound(
     early = np.maximum(arrival - REACH * motion.interval / float(ratio), distances / air.speed)
     pressure[time < early[:, None]] = 0.0
     notes = _notes(motion, len(kept), len(panel.wavenumbers), time[-1], arrival, silence)
+    if unheard is not None and arrival[0] <= time[-1]:
+        notes += unheard(panel.only(sent.numbers), sent.responses[0], pressure[0])
     if bandwidth < AUDIBLE:
         notes.append(f"complete only up to {bandwidth:.4g} Hz, because of the record's sample rate")
     attributes = {

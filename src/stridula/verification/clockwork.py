@@ -31,6 +31,11 @@ COUNTS = (50, 20)
 REASON = "one per cent at twenty steps a period, and so many at fifty"
 
 
+def is_aged(law: FrictionLaw) -> bool:
+    """Return whether the state of a law is a time."""
+    return law.state_units == "s"
+
+
 def slider(law: FrictionLaw, belt: float) -> Slider:
     """Return the mass on a belt, at rest with it where friction at rest just holds the spring."""
     start = getattr(law, "static", 0.5)
@@ -69,7 +74,7 @@ def swings(law: Any, belt: float) -> tuple[float, float, float]:
 
     The age of a contact is taken as its logarithm.
     """
-    mass, rubbing, aged = slider(law, belt), rubbing_of(law), isinstance(law, RateAndState)
+    mass, rubbing, aged = slider(law, belt), rubbing_of(law), is_aged(law)
 
     def rates(_: float, y: Array) -> list[float]:
         state = exp(y[2]) if aged else float(y[2])
@@ -100,8 +105,8 @@ def clockwork() -> Outcome:
     """Period and swing of the cycle under seven laws at two velocities of the belt, in 50 and in 20 steps a period."""
     rows, curves, scheme = [], [], ExactModal()
     for name, law in LAWS.items():
-        for belt in (0.5 * SLOWER, SLOWER) if isinstance(law, RateAndState) else (SLOWER, FASTER):
-            period, lowest, highest = (swings if isinstance(law, LuGre | RateAndState) else cycle)(law, belt)
+        for belt in (0.5 * SLOWER, SLOWER) if is_aged(law) else (SLOWER, FASTER):
+            period, lowest, highest = (cycle if law.set_valued else swings)(law, belt)
             for count in COUNTS:
                 run = slider(law, belt).run(SETTLED + PERIODS, 1.0 / count, scheme)
                 time, place = run["time"].values, run["displacement"].values[:, 0]
