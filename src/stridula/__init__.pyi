@@ -119,10 +119,12 @@ from .studies import CalibrationProgress as CalibrationProgress
 from .studies import Grid as Grid
 from .studies import LatinHypercube as LatinHypercube
 from .studies import Range as Range
+from .studies import StepCheck as StepCheck
 from .studies import SweepProgress as SweepProgress
 from .studies import Target as Target
 from .studies import agreement as agreement
 from .studies import calibrate as calibrate
+from .studies import check_step as check_step
 from .studies import critical_value as critical_value
 from .studies import ensemble as ensemble
 from .studies import root_loci as root_loci

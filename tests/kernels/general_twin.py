@@ -383,7 +383,7 @@ class Touch:
         self.law = contact.friction
         self.status, self.state, self.anchor = SEPARATED, state_of_new(self.law), 0.0
         self.material = self.place = self.place_before = self.last_slip = self.past = 0.0
-        self.earlier_slip, self.rests = 0.0, False
+        self.earlier_slip = self.stuck = self.stuck_now = 0.0
         self.normal = self.tangential = self.closed = self.gap = 0.0
         self.given = None
 
@@ -496,7 +496,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         q_before = start_under(force(0.0) + pushes @ rows)
         begin(q_before)
         for one, (status, one.normal, one.tangential) in zip(closed, found, strict=True):
-            one.closed = float(status != SEPARATED)
+            one.closed, one.stuck = float(status != SEPARATED), float(status == STICKING)
             one.status = one.status or status
             one.past = one.tangential / one.normal / 2 if one.normal else 0.0
     for one in touches:
@@ -549,7 +549,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             gap = gaps[i] + rows[2 * i] @ (q_new - trial)
             if status != SEPARATED and not isinstance(one.law, st.Coulomb):
                 free = slips[i] + rows[2 * i + 1] @ (q_new - trial) - w[1] @ [normal, -tangential]
-                _, one.past_now, one.state_now, _, one.rests = on_its_way(
+                _, one.past_now, one.state_now, _, one.stuck_now = on_its_way(
                     LAWS, one, normal, free, strayed[i], w, h, i in let_go
                 )
             closed = one.closed
@@ -558,7 +558,9 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
                 closed = max(0.0, closed - missing / (one.normal + missing))
             alone = gap - w[0] @ [normal, -tangential]
             held = closed * (one.status == STICKING)
-            if one.status == STICKING and status == SLIDING and not has_state(one.law):
+            if not has_state(one.law) and not isinstance(one.law, st.Coulomb):
+                held = closed * one.stuck
+            elif one.status == STICKING and status == SLIDING and not has_state(one.law):
                 slip = slips[i] + rows[2 * i + 1] @ (q_new - trial) - w[1] @ [normal, -tangential] + strayed[i]
                 held *= stuck_until(one.normal, one.tangential, alone, slip, w, held_up_to(one.law, True))
             shares.append([1 - closed, held, closed - held])
@@ -577,14 +579,16 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             work["convection"] += slope * (place - one.place_before) / 2
             on_way = status != SEPARATED and not isinstance(one.law, st.Coulomb)
             if status == STICKING and on_way and not has_state(one.law):
-                one.anchor = one.anchor if one.rests and one.status == STICKING else material
+                one.anchor = one.anchor if one.stuck_now == 1 and one.status == STICKING else material
             elif status == STICKING and one.status != STICKING:
                 one.anchor = one.material
             one.past, one.earlier_slip = one.past_now if on_way else 0.0, one.last_slip
             if has_state(one.law):
                 one.state = one.state_now if on_way else state_of_new(one.law)
             landings.append(int(one.status == SEPARATED and status != SEPARATED))
-            one.status, one.material, one.last_slip = status, material, 0.0 if on_way and one.rests else slip
+            rests = on_way and not has_state(one.law) and one.stuck_now == 1
+            one.stuck = one.stuck_now if on_way else 0.0
+            one.status, one.material, one.last_slip = status, material, 0.0 if rests else slip
             one.normal, one.tangential = normal, tangential
             one.place_before, one.place = one.place, place
         d = q_new - q

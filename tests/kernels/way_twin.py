@@ -17,7 +17,7 @@ SEPARATED, STICKING, SLIDING = 0, 1, 2
 
 
 def on_its_way(laws, before, normal, slip, strayed, own, h, let_go):
-    """Return ratio, past part for the next step, state, status and whether the contact stays where it is.
+    """Return ratio, past part for the next step, state, status and the share of the step in which it sticks.
 
     `laws` has the functions `curve`, `held_up_to`, `state_after` and `ratio_with_state`; `own` is the compliance for
     ``(N, -T)``; `slip` the slip without forces of this contact.
@@ -32,7 +32,7 @@ def on_its_way(laws, before, normal, slip, strayed, own, h, let_go):
     if before.status == STICKING and last == 0.0:
         grows = needed - (before.tangential / before.normal if before.normal else needed)
         if max(abs(needed), abs(needed + grows)) <= held and not let_go:
-            return needed, needed / 2 + grows / 3, before.state, STICKING, True
+            return needed, needed / 2 + grows / 3, before.state, STICKING, 1.0
         if abs(needed) > held:
             # It broke before this step: from the last one on it slides with the ratio of incipient sliding.
             sense, earlier = np.sign(needed), needed - grows
@@ -42,29 +42,29 @@ def on_its_way(laws, before, normal, slip, strayed, own, h, let_go):
             before_now += _moments(breaks, 1.0, slides, slides, slides)[1]
             u = pull * ((needed / 2 - grows / 6) - before_now)
             more, rest, sticks = _slide(way, u, 0.0, (pull * needed, pull * grows), sense)
-            return before_now + more, rest, before.state, STICKING if sticks else SLIDING, False
+            return before_now + more, rest, before.state, STICKING if sticks else SLIDING, sticks
         sense = np.sign(needed + grows) or -1.0
         breaks = 0.0 if abs(needed) >= held else np.clip((sense * held - needed) / grows, 0.0, 1.0)
         later, past = _moments(0.0, breaks, *(needed + grows * breaks * np.array([0.0, 0.5, 1.0])))
         more, rest, sticks = _slide(way, 0.0, breaks, (pull * needed, pull * grows), sense)
         ratio = needed / 2 - grows / 6 + later + more
-        return ratio, past + rest, before.state, STICKING if sticks else SLIDING, False
+        return ratio, past + rest, before.state, STICKING if sticks else SLIDING, breaks + sticks
     if before.status == STICKING:
         short = 2 * (needed - before.past)
         if abs(short) <= held and not let_go:
-            return needed, needed / 2, before.state, STICKING, True
+            return needed, needed / 2, before.state, STICKING, 1.0
         more, rest, sticks = _slide(way, 0.0, 0.0, (pull * short, 0.0), np.sign(short))
-        return before.past + more, rest, before.state, STICKING if sticks else SLIDING, False
+        return before.past + more, rest, before.state, STICKING if sticks else SLIDING, sticks
     past = before.past
     if before.status == SEPARATED:
         if abs(needed) <= held and not let_go:
-            return needed, needed / 2, before.state, STICKING, True
+            return needed, needed / 2, before.state, STICKING, 1.0
         sense = 1.0 if begun > 0 else -1.0
         past = 0.5 * sense * laws.curve(law, abs(begun) / h)
     u = begun - pull * past
     sense = 1.0 if u > 0 or (u == 0 and drive > 0) else -1.0
     more, rest, sticks = _slide(way, u, 0.0, (drive, 0.0), sense)
-    return past + more, rest, before.state, STICKING if sticks else SLIDING, False
+    return past + more, rest, before.state, STICKING if sticks else SLIDING, sticks
 
 
 def _moments(a, b, first, middle, last):
@@ -86,7 +86,7 @@ def _part(way, u, rate, ratio):
 
 
 def _slide(way, u, begin, drive, sense):
-    """Slide from `begin` on by the method of Runge and Kutta; return both parts of the ratio and whether it sticks."""
+    """Slide from `begin` on by the method of Runge and Kutta; return both parts of the ratio and the share of stick."""
     later, past, pull = 0.0, 0.0, way.pull
     held = way.laws.held_up_to(way.law, True)
     for _ in range(3):
@@ -120,13 +120,13 @@ def _slide(way, u, begin, drive, sense):
             more, less = _moments(a, b, k1, 0.5 * (k2 + k3), k4)
             later, past, u, a = later + more, past + less, new, b
         if not stops:
-            return later, past, False
+            return later, past, 0.0
         ends = drive[0] + drive[1] * np.array([begin, 0.5 * (begin + 1), 1.0])
         if max(abs(ends[0]), abs(ends[2])) <= held * pull:
             more, less = _moments(begin, 1.0, *ends / pull)
-            return later + more, past + less, True
+            return later + more, past + less, 1.0 - begin
         u, sense = 0.0, 1.0 if ends[0] > 0 else -1.0
-    return later, past, False
+    return later, past, 0.0
 
 
 def _with_state(laws, before, begun, drive, pull, moved, h):
@@ -166,7 +166,7 @@ def _with_state(laws, before, begun, drive, pull, moved, h):
         u = v * h
     ratio = past + later
     slow = abs(moved - pull * ratio) < h * law.velocity
-    return ratio, rest, state, STICKING if slow else SLIDING, False
+    return ratio, rest, state, STICKING if slow else SLIDING, float(slow)
 
 
 def _root(error, law, reach):

@@ -92,8 +92,11 @@ class Block:
                 slopes = np.where(about > least, p * k * at ** (p - 1.0), k * least ** (p - 1.0))
                 return -(self.gap[soft] + self.normal[soft] @ solved(slopes, forces, about)[:count]) - about
 
-            answer = root(residual, indented, method="hybr", options={"xtol": 1e-14})
-            if not answer.success and np.abs(answer.fun).max() > 1e-12 * np.abs(answer.x).max():
+            for start in (indented, 0.1 * indented, 1e-3 * indented, -indented):
+                answer = root(residual, start, method="hybr", options={"xtol": 1e-14})
+                if np.abs(answer.fun).max() <= 1e-9 * np.abs(answer.x).max():
+                    break
+            else:
                 return None
             at = np.maximum(answer.x, least)
             forces = np.where(answer.x > least, k * at**p, k * least ** (p - 1.0) * answer.x)

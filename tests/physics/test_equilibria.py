@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stridula as st
+from stridula.linear.complementarity import all_sets, searched
 
 from .blocks import Block, random_block
 
@@ -14,8 +15,7 @@ def different(block: Block) -> list:
     """Return the equilibria by hand that are in different places."""
     kept: list = []
     for one in block.equilibria():
-        moved = block.normal @ one[1]
-        if not any(np.abs(moved - block.normal @ other[1]).max() <= 1e-6 * np.abs(moved).max() for other in kept):
+        if not any(np.abs(one[1] - other[1]).max() <= 1e-6 * np.abs(one[1]).max() for other in kept):
             kept.append(one)
     return kept
 
@@ -66,3 +66,88 @@ def test_every_unique_equilibrium_of_blocks_is_found(spatial, kind):
         growth = block.growth(closed, forces)
         assert float(found.growth_rate.max()) == pytest.approx(growth, rel=1e-6, abs=1e-3)
     assert unique > 8
+
+
+@pytest.mark.parametrize("kind", ["linear", "rigid"])
+def test_several_and_no_equilibria_are_said(kind):
+    """On supports in all directions no motion is free, and every set counts."""
+    words = {}
+    for seed in range(60):
+        block = random_block(np.random.default_rng(seed), False, kind)
+        if not np.diag(block.stiffness).all():
+            continue
+        count = len(different(block))
+        found = st.sliding_stability(block.system())
+        words.setdefault(count, set()).add(found.attrs["equilibria"])
+        if count == 0:
+            assert found.attrs["equilibrium"] == "jammed"
+            assert np.isnan(found.normal_force).all()
+            assert not found.sizes["mode"]
+    assert words[1] == {"one"}
+    assert words[0] == {"none"}
+
+
+def test_given_statuses_are_judged_with_friction():
+    block = random_block(np.random.default_rng(3), False, "linear")
+    found = st.sliding_stability(block.system())
+    again = st.sliding_stability(block.system(), status=found.status.values.tolist())
+    assert (again.attrs["equilibrium"], again.attrs["violated"]) == (found.attrs["equilibrium"], "")
+    np.testing.assert_array_equal(again.normal_force, found.normal_force)
+    wrong = np.where(found.status == "sliding", "separated", "sliding").tolist()
+    assert st.sliding_stability(block.system(), status=wrong).attrs["violated"]
+
+
+def test_a_search_of_sets_solves_random_complementarity_problems():
+    """Matrices whose symmetric part is positive definite have a single solution, at any size."""
+    rng = np.random.default_rng(5)
+    for count in [*range(1, 9)] * 5 + [60]:
+        root, skew = rng.normal(size=(2, count, count))
+        matrix, free = root @ root.T + 0.1 * np.eye(count) + 2.0 * (skew - skew.T), rng.normal(size=count)
+
+        def margins(closed, matrix=matrix, free=free):
+            force = np.zeros(len(free))
+            force[closed] = np.linalg.solve(matrix[np.ix_(closed, closed)], -free[closed])
+            return np.where(closed, force, free + matrix @ force) + 1e-9
+
+        found = searched(margins, np.ones(count, dtype=bool))
+        assert found is not None
+        assert (margins(found) >= 0.0).all()
+        if count < 9:
+            (only,) = all_sets(margins, count)
+            np.testing.assert_array_equal(found, only)
+
+
+def resting(stiffness: float | None, velocity: float = 0.0) -> st.System:
+    """Return an elastic block of second order, pressed on a floor or on a belt."""
+    steel = st.Material(2.1e11, 7800.0, 0.3)
+    body = st.SolidBody.block((0.06, 0.03, 0.04), (2, 1, 2), steel, cutoff=30e3, contact_faces=["bottom"], name="block")
+    face = st.SurfaceContact(
+        body, "bottom", st.RigidTrack(velocity=velocity), friction=st.Coulomb(0.3), stiffness=stiffness, name="face"
+    )
+    top = body.face_points("top")
+    shares = top.area / top.area.sum()
+    loads = [
+        st.Force(body.at(place), y=-21.0 * share)
+        for place, share in zip(top.place.tolist(), shares.tolist(), strict=True)
+    ]
+    springs = [st.Spring(body.at(top.place[k].tolist()), stiffness=1e7, direction=way) for k in (0, -1) for way in "xz"]
+    return st.System(face, loads, springs)
+
+
+@pytest.mark.parametrize("stiffness", [1e12, None])
+def test_a_face_at_rest_pulls_nowhere_along_the_floor(stiffness):
+    """It is held where it rests without friction, along both tangents, under its Poisson strain too."""
+    found = st.sliding_stability(resting(stiffness))
+    assert (found.attrs["equilibrium"], found.attrs["violated"]) == ("held", "")
+    assert float(found.normal_force.sum()) == pytest.approx(21.0)
+    assert np.abs(found.tangential_force).max() < 1e-9
+
+
+def test_a_rigid_face_is_the_limit_of_a_stiff_one():
+    """Points of second-order elements hold the same motion twice; sums and modes do not depend on how they share it."""
+    rigid, stiff = (st.sliding_stability(resting(one, 1.0)) for one in (None, 1e17))
+    assert rigid.attrs["violated"] == ""
+    assert (rigid.normal_force >= 0.0).all()
+    assert float(rigid.normal_force.sum()) == pytest.approx(21.0)
+    moved = [one.tip_displacement.sel(direction="x").values for one in (rigid, stiff)]
+    np.testing.assert_allclose(moved[0], moved[1], rtol=1e-3)

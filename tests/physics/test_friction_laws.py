@@ -66,13 +66,13 @@ def error(law, scheme, step, duration=0.04):
 
 @BOTH
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
-def test_order_in_smooth_sliding_is_two(law, scheme):
+def test_order_in_smooth_sliding_is_at_least_two(law, scheme):
     if isinstance(scheme, st.ExactModal) and isinstance(law, (st.Coulomb, st.StaticKinetic)):
         # A constant force is exact.
         assert error(law, scheme, 4e-4) < 1e-12
         return
     order = np.log2(error(law, scheme, 1e-5) / error(law, scheme, 5e-6))
-    assert order == pytest.approx(2.0, abs=0.1)
+    assert order > 1.9
 
 
 class LateVelocity(st.CentralDifference):

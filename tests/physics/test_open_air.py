@@ -380,20 +380,6 @@ def test_beyond_the_highest_mode_fits_end_and_below_it_responses_stay():
     assert np.abs(spectra[1][frequency > 6.6e3]).max() < 5e-3 * np.abs(spectra[1]).max()
 
 
-def test_a_start_in_motion_is_reported_as_left_out():
-    plate = disc(0.0, cutoff=800.0)
-    apart = st.RigidBody(1.0, points={"tip": (0.0, 0.0, 0.0)})
-    contact = st.PointContact(apart.at("tip"), plate.at(HERE), gap=1.0, normal=(0.0, 0.0, 1.0))
-    left_out = "vibration at the start is not included"
-    for start in (st.InitialVelocity(plate, z=0.1), st.InitialState(apart, velocity=[0.0, 0.0, 1.0])):
-        system = st.System(contact, [start])
-        heard = st.radiate(st.simulate(system, 2e-3, sample_rate=1e4), system, (0.3, 0.3, 0.5))
-        assert f"{left_out}: {start}" in heard.attrs["notes"]
-    system = st.System(contact, [st.InitialVelocity(plate)])
-    heard = st.radiate(st.simulate(system, 2e-3, sample_rate=1e4), system, (0.3, 0.3, 0.5))
-    assert left_out not in heard.attrs["notes"]
-
-
 def fits_made(monkeypatch, surface):
     """Return impulse responses of a body as in a new process, and the number of fits computed for them."""
     counted = []

@@ -295,3 +295,51 @@ def test_a_wall_needs_a_track_and_sound_needs_a_surface():
         ValueError, match="system must have a body with a surface, which radiates sound, got none of slider"
     ):
         st.radiate(record(0.0, pulse()), st.System(st.PointContact(mass.centre, st.RigidTrack())), PLACE)
+
+
+@pytest.mark.parametrize("joined", [False, True])
+def test_vibration_at_the_start_is_heard(joined):
+    """A struck track, alone and joined to a mass that starts in motion, as from its recorded motion."""
+    start = [st.InitialVelocity(BAR, y=0.1), st.InitialState(SHAKER, displacement=(0.0, 1e-4), velocity=(0.0, 0.2))]
+    between = [st.Spring(SHAKER.centre, BAR.at(0.3), stiffness=1e6, direction="y")]
+    apart = st.PointContact(st.PointMass(0.05).centre, BAR, at=0.21, gap=1.0)
+    system = st.System(apart, start if joined else start[:1], between if joined else [])
+    run = st.simulate(system, 0.03, motion_rate=50e3)
+    known = st.radiate(run, system, PLACE, bodies=[BAR], sample_rate=16e3)
+    found = st.radiate(run.drop_vars("modal_motion"), system, PLACE, bodies=[BAR], sample_rate=16e3)
+    assert "vibration at the start" not in found.attrs["notes"]
+    known, found = (one.interp(time=np.linspace(3e-3, 0.029, 400)).values for one in (known, found))
+    assert np.linalg.norm(found - known) < 0.01 * np.linalg.norm(known)
+
+
+def test_a_continued_record_has_no_blow_at_its_start():
+    """A track at rest under constant forces is silent in the second record, too."""
+    mass = st.PointMass(0.05)
+    contact = st.PointContact(mass.centre, BAR, at=0.21)
+    drives = [st.Force(mass.centre, y=-5.0), st.Force(BAR.at(0.3), y=2.0), st.InitialEquilibrium()]
+    first = st.simulate(st.System(contact, drives), 2e-3)
+    later = st.simulate(st.System(contact, drives), 2e-3, start=first)
+    sudden = st.System(contact, drives[:-1])
+    blow = np.abs(st.radiate(first, sudden, PLACE, bodies=[BAR]).values).max()
+    for source in (st.System(contact, drives), BAR):
+        kind = {"bodies": [BAR]} if source is not BAR else {}
+        assert np.abs(st.radiate(later, source, PLACE, **kind).values).max() < 1e-6 * blow
+
+
+def test_a_start_in_equilibrium_is_silent():
+    mass = st.PointMass(0.05)
+    contact = st.PointContact(mass.centre, BAR, at=0.21)
+    drives = [st.Force(mass.centre, y=-5.0), st.Force(BAR.at(0.3), y=2.0)]
+    loud = st.System(contact, drives)
+    known = np.abs(st.radiate(st.simulate(loud, 2e-3), loud, PLACE).values).max()
+    still = st.System(contact, [*drives, st.InitialEquilibrium()])
+    assert np.abs(st.radiate(st.simulate(still, 2e-3), still, PLACE).values).max() < 1e-6 * known
+
+
+def test_a_mode_on_top_of_the_equilibrium_is_reported_as_left_out():
+    mass = st.PointMass(0.05)
+    contact = st.PointContact(mass.centre, BAR, at=0.21)
+    for start in (st.InitialEquilibrium(mode=0, amplitude=1e-7), st.InitialEquilibrium()):
+        system = st.System(contact, [st.Force(mass.centre, y=-5.0), start])
+        notes = st.radiate(st.simulate(system, 1e-3), system, PLACE).attrs["notes"]
+        assert (f"vibration at the start is not included: {start}" in notes) == start.starts_motion

@@ -218,7 +218,10 @@ def test_a_body_in_space_that_starts_in_motion_is_heard():
     assert heard.values.any()
     assert heard.attrs["motion"] == "recorded"
     assert "starts with" not in heard.attrs["notes"]
-    assert not st.radiate(run.drop_vars(VARIABLE), system, (0.3, 0.3, 0.5)).values.any()
+    again = st.radiate(run.drop_vars(VARIABLE), system, (0.3, 0.3, 0.5))
+    assert "vibration at the start" not in again.attrs["notes"]
+    late = slice(15, -5)
+    assert np.abs(again.values - heard.values)[late].max() < 0.02 * np.abs(heard.values).max()
 
 
 def test_runs_side_by_side_also_record_it():

@@ -14,6 +14,7 @@ from hypothesis import strategies as some
 import stridula as st
 from stridula import analysis
 from stridula._kernels import layout as at
+from stridula._kernels.slipping import STOPPED
 from stridula.acoustics.pressures import check_length, check_rate
 from stridula.acoustics.resampling import LOWEST, ratio_of
 from stridula.checks import at_least, at_most, listed, within
@@ -196,6 +197,12 @@ def test_forty_contacts_do_not_make_a_long_message():
         "right separated at 0.123456 m with 1 N normal, 0 N tangential, left separated at 0.123456 m with 0 N normal, "
         "0 N tangential"
     )
+
+
+def test_a_contact_that_stopped_in_the_step_that_was_not_solved_sticks():
+    carried = np.zeros((1, at.CARRIED))
+    carried[:, at.STATUS] = STOPPED
+    assert contact_words(("shoe",), carried).startswith("shoe sticking at 0 m")
 
 
 def test_lists_of_variables_of_a_record_are_short():

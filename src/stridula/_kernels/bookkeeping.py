@@ -34,9 +34,11 @@ def share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, 
         closed = choose(opened, choose(left < 0.0, zero, left), closed)
     stayed = choose(stuck, closed, zero)
     slips = choose(stuck, status, zero) > SLIDING - 0.5
-    if set_valued(law) and anywhere(slips):
+    if law == at.COULOMB and anywhere(slips):
         kept = stuck_share(last_normal, last_tangential, free_gap, free_slip + away, w, at_rest)
         stayed = choose(slips, kept * stayed, stayed)
+    elif law != at.COULOMB and set_valued(law):
+        stayed = closed * held(carried, base + at.STUCK_SHARE, run, zero)
     add(sums, tally + at.STUCK, run, stayed, zero)
     add(sums, tally + at.SLID, run, closed - stayed, zero)
     if not anywhere(status > 0.5 * STICKING):
@@ -74,7 +76,7 @@ def driven_work(i, touch, motion, n, run, runs, zero):
 
 @numba.njit(**OPTIONS)
 def next_of(i, touch, moved, w, away, before, contacts, step, run, runs, zero):
-    """Return the past part of the ratio of contact `i` for the next step, the state of its law, whether it rests."""
+    """Return the past part of the ratio of contact `i` for the next step, the state of its law, its share of stick."""
     law, laws, number = contacts.codes[i], contacts.laws, i * runs + run
     if law == at.COULOMB:
         return zero, before[3], zero
@@ -108,7 +110,7 @@ def keep_motion(i, moved, rests, before, carried, run, zero):
     """Carry gap and slip of contact `i` to the next step; the slip of one that rests is rounding, carried as none."""
     base = i * at.CARRIED
     hold(carried, base + at.EARLIER_SLIP, run, before[1])
-    hold(carried, base + at.LAST_SLIP, run, choose(rests > 0.5, zero, moved[3]))
+    hold(carried, base + at.LAST_SLIP, run, choose(rests >= 1.0, zero, moved[3]))
     hold(carried, base + at.EARLIER_GAP, run, held(carried, base + at.LAST_GAP, run, zero))
     hold(carried, base + at.LAST_GAP, run, moved[2])
     add(carried, base + at.MATERIAL, run, moved[3], zero)
@@ -170,7 +172,9 @@ def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, run
             driven = driven_work(i, touch, imposed.motion, n, run, runs, zero)
             add(state.energies, at.CONTACT_WORK, run, -driven, zero)
             add(state.energies, at.DRIVE_WORK, run, driven, zero)
-        past, friction_state, rests = next_of(i, touch, moved, w, away, before, contacts, timing.step, run, runs, zero)
+        past, friction_state, stuck = next_of(i, touch, moved, w, away, before, contacts, timing.step, run, runs, zero)
+        rests = stuck if law != at.COULOMB and set_valued(law) else zero
+        hold(carried, i * at.CARRIED + at.STUCK_SHARE, run, stuck)
         hold(carried, i * at.CARRIED + at.PAST_RATIO, run, past)
         hold(carried, i * at.CARRIED + at.FRICTION_STATE, run, friction_state)
         lost = keep_forces(i, touch, moved, carried, contacts, closed, run, zero)

@@ -43,17 +43,17 @@ def solve_contact(gap, slip, strayed, w, law, laws, i, before, let_go, step):
 
 @numba.njit(**STRICT)
 def ratio_under(normal, slip, strayed, w, law, laws, i, before, let_go, step):
-    """Return the ratio of forces over a step under a normal force, its past part, the new state and status.
+    """Return the ratio of forces over a step under a normal force, its past part, new state, status and stuck share.
 
     See `slipping`.
     """
     if set_valued(law):
-        ratio, past, status = ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step)
-        return ratio, past, before[3], status
+        ratio, past, status, stuck = ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step)
+        return ratio, past, before[3], status, stuck
     ratio, past, state = ratio_with_state(normal, slip, w, law, laws, i, before, step)
     moved = slip + (w[2] - ratio * w[3]) * normal
     slow = abs(moved) < step * sticking_speed(law, laws, i)
-    return ratio, past, state, STICKING if slow else SLIDING
+    return ratio, past, state, STICKING if slow else SLIDING, 1.0 if slow else 0.0
 
 
 @numba.njit(**STRICT)
@@ -73,7 +73,7 @@ def slide_on_its_way(gap, slip, strayed, w, law, laws, i, before, let_go, step):
     normal = -gap / (free if free > 0.0 else w_nn)
     status, last, error_before = SLIDING, 0.0, 0.0
     for trial in range(TRIALS):
-        ratio, _, _, status = ratio_under(normal, slip, strayed, w, law, laws, i, before, let_go, step)
+        ratio, _, _, status, _ = ratio_under(normal, slip, strayed, w, law, laws, i, before, let_go, step)
         free = w_nn - ratio * w_nt
         if free <= 0.0:
             pressed, needed = sticking_forces(gap, slip + strayed, w)

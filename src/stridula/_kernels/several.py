@@ -141,9 +141,11 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
         if law == at.LUGRE:
             keep_bristles(i, slips, (was, last, earlier, states), status, carried, contacts, timing.step, run, runs)
         else:
-            past, friction_state, rests = next_of(
+            past, friction_state, stuck = next_of(
                 i, touch, moved, w, away, before, contacts, timing.step, run, runs, zero
             )
+            rests = zero if law == at.COULOMB else stuck
+            hold(carried, base + at.STUCK_SHARE, run, stuck)
             hold(carried, base + at.PAST_RATIO, run, c * past)
             hold(carried, base + at.CARRIED + at.PAST_RATIO, run, s * past)
             hold(carried, base + at.FRICTION_STATE, run, friction_state)

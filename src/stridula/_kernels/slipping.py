@@ -78,8 +78,8 @@ def slide_through(slip, begin, drive, pull, sense, law, laws, i, step):
     -------
     later, past : float
         Ratio of the rest of the step, weighted for this step and for the next.
-    sticks : bool
-        Whether the contact ends at rest.
+    stuck : float
+        Share of the step for which the contact is at rest at its end.
     """
     later, past, held = 0.0, 0.0, holding_ratio(law, laws, i, True)
     for _ in range(REVERSALS):
@@ -109,13 +109,13 @@ def slide_through(slip, begin, drive, pull, sense, law, laws, i, step):
             more, less = moments(begin, end, r1, 0.5 * (r2 + r3), r4)
             later, past, begin, slip = later + more, past + less, end, new
         if not stops:
-            return later, past, False
+            return later, past, 0.0
         first, last = drive[0] + drive[1] * begin, drive[0] + drive[1]
         if max(abs(first), abs(last)) <= held * pull and pull > 0.0:
             more, less = moments(begin, 1.0, first / pull, 0.5 * (first + last) / pull, last / pull)
-            return later + more, past + less, True
+            return later + more, past + less, 1.0 - begin
         slip, sense = 0.0, 1.0 if first > 0.0 else -1.0
-    return later, past, False
+    return later, past, 0.0
 
 
 @numba.njit(inline="always", **STRICT)
@@ -132,7 +132,7 @@ def broken_before(earlier, grows, held, sliding, sense):
 
 @numba.njit(**STRICT)
 def ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step):
-    """Return the ratio of forces over a step under a set-valued law, its past part and status.
+    """Return the ratio of forces over a step under a set-valued law, its past part, status and share of stick.
 
     `normal` is the normal force, `slip` the slip without the forces of this contact; other arguments as in
     `contact.solve_contact`. A contact that sticks does so throughout the step.
@@ -146,38 +146,38 @@ def ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step
         earlier = before[5] / before[4] if before[4] > 0.0 else needed
         grows = needed - earlier
         if not let_go and abs(needed) <= held and abs(needed + grows) <= held:
-            return needed, 0.5 * needed + grows / 3.0, STICKING
+            return needed, 0.5 * needed + grows / 3.0, STICKING, 1.0
         if abs(needed) > held:
             sense = 1.0 if needed > 0.0 else -1.0
             past, begun = broken_before(earlier, grows, held, sense * ratio_of(0.0, sense, law, laws, i, step), sense)
             drive = (pull * needed, pull * grows)
-            more, rest, sticks = slide_through(pull * begun, 0.0, drive, pull, sense, law, laws, i, step)
-            return past + more, rest, STOPPED if sticks else SLIDING
+            more, rest, stuck = slide_through(pull * begun, 0.0, drive, pull, sense, law, laws, i, step)
+            return past + more, rest, STOPPED if stuck > 0.0 else SLIDING, stuck
         sense = 1.0 if needed + grows > 0.0 else -1.0
         broke = min(max((sense * held - needed) / grows, 0.0), 1.0) if abs(needed) < held else 0.0
         first, less = moments(0.0, broke, needed, needed + 0.5 * broke * grows, needed + broke * grows)
-        more, rest, sticks = slide_through(0.0, broke, (pull * needed, pull * grows), pull, sense, law, laws, i, step)
+        more, rest, stuck = slide_through(0.0, broke, (pull * needed, pull * grows), pull, sense, law, laws, i, step)
         ratio = 0.5 * needed - grows / 6.0 + first + more
-        return ratio, less + rest, STOPPED if sticks else SLIDING
+        return ratio, less + rest, STOPPED if stuck > 0.0 else SLIDING, broke + stuck
     if was == STICKING:
         # It came to rest within the last step.
         short = 2.0 * (needed - past)
         if not let_go and abs(short) <= held:
-            return needed, 0.5 * needed, STICKING
+            return needed, 0.5 * needed, STICKING, 1.0
         sense = 1.0 if short > 0.0 else -1.0
-        more, rest, sticks = slide_through(0.0, 0.0, (pull * short, 0.0), pull, sense, law, laws, i, step)
-        return past + more, rest, STOPPED if sticks else SLIDING
+        more, rest, stuck = slide_through(0.0, 0.0, (pull * short, 0.0), pull, sense, law, laws, i, step)
+        return past + more, rest, STOPPED if stuck > 0.0 else SLIDING, stuck
     begun = 0.5 * (last + moved)
     if was != SLIDING:
         # It lands: half of its force acts before the step.
         if not let_go and abs(needed) <= held:
-            return needed, 0.5 * needed, STICKING
+            return needed, 0.5 * needed, STICKING, 1.0
         sense = 1.0 if begun > 0.0 else -1.0
         past = 0.5 * ratio_of(begun, sense, law, laws, i, step)
     slip_at_step, drive = begun - pull * past, moved - last
     sense = 1.0 if slip_at_step > 0.0 or (slip_at_step == 0.0 and drive > 0.0) else -1.0
-    more, rest, sticks = slide_through(slip_at_step, 0.0, (drive, 0.0), pull, sense, law, laws, i, step)
-    return past + more, rest, STOPPED if sticks else SLIDING
+    more, rest, stuck = slide_through(slip_at_step, 0.0, (drive, 0.0), pull, sense, law, laws, i, step)
+    return past + more, rest, STOPPED if stuck > 0.0 else SLIDING, stuck
 
 
 @numba.njit(**STRICT)

@@ -18,7 +18,7 @@ def solve(gap, slip, strayed, w, law, laws, run, before, let_go, step):
 
 
 def next_on_way(touch, slip, strayed, w, law, laws, run, before, let_go, step):
-    """Return the past parts of the ratios for the next step, the internal states, and where contacts stick throughout.
+    """Return the past parts of the ratios for the next step, the internal states, and shares of stick of this step.
 
     `touch` are normal force and status. Where bodies are apart, states are those of new contacts.
     """
@@ -75,9 +75,9 @@ def next_on_way_of_run(touch, slip, strayed, w, law, laws, run, before, let_go, 
     if touch[1] < 0.5:
         return 0.0, laws[run, at.LAW_PARAMETERS - 1], 0.0
     if law == at.COULOMB or (set_valued(law) and w[3] == 0.0):
-        return 0.0, before[3], 0.0
-    _, past, state, status = ratio_under(touch[0], slip, strayed, w, law, laws, run, before, let_go > 0.5, step)
-    return past, state, 1.0 if set_valued(law) and status == STICKING else 0.0
+        return 0.0, before[3], 1.0 if touch[1] == STICKING else 0.0
+    _, past, state, _, stuck = ratio_under(touch[0], slip, strayed, w, law, laws, run, before, let_go > 0.5, step)
+    return past, state, stuck
 
 
 @numba.njit(**STRICT)
@@ -120,9 +120,9 @@ def solve_runs(gap, slip, strayed, w, law, laws, run, before, let_go, step):
 @numba.njit(**STRICT)
 def next_on_way_of_runs(touch, slip, strayed, w, law, laws, run, before, let_go, step):
     """Do `next_on_way` for vectors of runs."""
-    past, state, rests = spread(0.0), before[3], spread(0.0)
+    past, state, stuck = spread(0.0), before[3], spread(0.0)
     if law == at.COULOMB:
-        return past, state, rests
+        return past, state, stuck
     for i in range(LANES):
         one = next_on_way_of_run(
             (lane(touch[0], i), lane(touch[1], i)),
@@ -137,8 +137,8 @@ def next_on_way_of_runs(touch, slip, strayed, w, law, laws, run, before, let_go,
             step,
         )
         past, state = with_lane(past, i, one[0]), with_lane(state, i, one[1])
-        rests = with_lane(rests, i, one[2])
-    return past, state, rests
+        stuck = with_lane(stuck, i, one[2])
+    return past, state, stuck
 
 
 @overload(solve)

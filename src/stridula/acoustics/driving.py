@@ -131,20 +131,24 @@ def driving(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = None
     if len(normal) != len(system.contacts):
         words = f"be a record of this system, of {len(system.contacts)} contacts"
         raise ArgumentError("run", words, run, got=f"one of {len(normal)}")
-    if start < 0.5 * interval:
+    continues = start > 0.5 * interval
+    # It has been in equilibrium before.
+    is_steady = continues or system.initial_equilibrium is not None
+    if not is_steady:
         normal, tangential = _from_rest(assemble(system), normal, tangential, steps)
     rows, signals = _of_contacts(flat, normal, tangential)
     if any(one.circle is not None for one in flat.contacts):
         rows, signals = _gone_round(flat, rows, signals, _places(given, system))
     drive_steps = min(steps, MOST_STEPS)
-    loads = _of_drives(flat, start, interval, drive_steps, samples)
-    is_steady = system.initial_equilibrium is not None
+    loads = _of_drives(flat, start, interval, drive_steps, samples, not is_steady)
     if is_steady:
-        # It has been in equilibrium before.
         signals, loads = signals - signals[:, :1], loads - loads[:, :1]
     on_paths: list[OnPath] = []
     if any(contact.path_body is not None for contact in system.contacts):
         on_paths = _on_paths(flat, system, _places(given, system), normal, tangential, steps, is_steady)
+    moving, starts = (np.zeros((0, flat.mode_count)), np.zeros((0, samples + 2 * LEAD)))
+    if not continues and starts_are_heard(flat):
+        moving, starts = _of_start(flat, interval, steps, samples)
     pushes = np.flatnonzero(signals.any(axis=0) | _acts(normal, is_steady) | _acts(tangential, is_steady))
     return Driving(
         flat,
@@ -152,10 +156,12 @@ def driving(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = None
         interval,
         samples,
         start + interval * (0.5 - LEAD) - 0.5 * interval / steps,
-        np.concatenate([rows, flat.loads]),
-        np.concatenate([steady(one, count) for one, count in ((signals, steps), (loads, drive_steps)) if len(one)]),
+        np.concatenate([rows, flat.loads, moving]),
+        np.concatenate(
+            [*(steady(one, count) for one, count in ((signals, steps), (loads, drive_steps)) if len(one)), starts]
+        ),
         on_paths,
-        0.0 if loads.any() else (float(pushes[0]) * interval if pushes.size else None),
+        0.0 if loads.any() or moving.any() else (float(pushes[0]) * interval if pushes.size else None),
     )
 
 
@@ -177,6 +183,8 @@ def _only(flat: Assembly, names: Sequence[str]) -> Assembly:
         dissipation=flat.dissipation[:coupled, :coupled],
         contacts=[replace(one, fixed=one.fixed[:, kept]) for one in flat.contacts],
         loads=flat.loads[:, kept],
+        position=flat.position[kept],
+        velocity=flat.velocity[kept],
         spans={name: (int(place[first]), int(place[last])) for name, (first, last) in flat.spans.items()},
     )
 
@@ -205,17 +213,49 @@ def _places(run: xr.Dataset, system: System) -> Array:
     return found
 
 
-def _of_drives(flat: Assembly, start: float, interval: float, steps: int, samples: int) -> Array:
+def _of_drives(flat: Assembly, start: float, interval: float, steps: int, samples: int, from_rest: bool) -> Array:
     """Return means of the factors of loads over the steps of each interval, shape (loads, samples)."""
     step = interval / steps
     times = start + step * np.arange(samples * steps)
     found = np.zeros((len(flat.loads), samples))
     for load, signal in zip(found, flat.signals, strict=False):
         values = signal(times, step)
-        if start < 0.5 * interval:
+        if from_rest:
             values[0] *= 1.0 - BEFORE
         load[:] = values.reshape(samples, steps).mean(axis=1)
     return found
+
+
+def starts_are_heard(flat: Assembly) -> bool:
+    """Return whether vibration at the start of a run is included: of bodies that do not turn."""
+    return not flat.turning
+
+
+def _of_start(flat: Assembly, interval: float, steps: int, samples: int) -> tuple[Array, Array]:
+    """Return modal forces and signals that cause the vibration of modes which start with displacement and velocity.
+
+    With ``q = q0 + v0 t + r``, r starts at rest under ``-(K q0 + D v0) - K v0 t``, and has the acceleration of q. The
+    modes have moved with v0 before, as in recorded motion.
+    """
+    position, velocity = (np.where(flat.massless, 0.0, one) for one in (flat.position, flat.velocity))
+    pulled = [
+        _times(flat, np.where(flat.massless, 0.0, flat.angular_frequency) ** 2, flat.stiffness, one)
+        for one in (position, velocity)
+    ]
+    damped = _times(flat, flat.damping_rate, flat.dissipation, velocity)
+    # Longer than the record, as what follows it is taken as constant.
+    times = interval * np.arange(samples + 2 * LEAD)
+    still, rising = np.ones_like(times), times + 0.5 * (steps - 1) * interval / steps
+    still[0] -= BEFORE / steps
+    signals = steady(np.stack([still, rising]), steps)[:, : samples + 2 * LEAD]
+    return -np.stack([pulled[0] + damped, pulled[1]]), signals
+
+
+def _times(flat: Assembly, alone: Array, coupled: Array, values: Array) -> Array:
+    """Return the product of a matrix of all modes with values of them; modes that are not coupled have one entry."""
+    found = alone * values
+    found[: flat.coupled] = coupled @ values[: flat.coupled]
+    return np.asarray(found)
 
 
 def _from_rest(flat: Assembly, normal: Array, tangential: Array, steps: int) -> tuple[Array, Array]:

@@ -11,12 +11,14 @@ import xarray as xr
 from ..arrays import Array, in_space
 from ..bodies import Modes
 from ..checks import ArgumentError, listed
+from ..lowering import assemble
 from ..places import origins_in_space
 from ..records.checked import record
 from ..system import System
 from .air import Air
 from .convolution import Convolution
 from .delays import Response, Sampling
+from .driving import starts_are_heard
 from .listeners import HEIGHT, SPACING, listeners_of
 from .panels import is_flat
 from .recorded_motion import at_one_rate, recorded_motion
@@ -214,6 +216,12 @@ def lacks(system: System, heard: Sequence[Any], silent: Sequence[str], motions: 
         return notes
     if moved.start > 0.5 * moved.interval:
         notes.append("the record continues another one; vibration left from the earlier record is not included")
-    elif started := [str(drive) for drive in system.drives if drive.starts_motion]:
-        notes.append(f"vibration at the start is not included: {listed(started)}")
-    return notes
+    return [*notes, *start_notes(system)]
+
+
+def start_notes(system: System) -> list[str]:
+    """Return a note on drives whose vibration at the start is left out."""
+    heard = starts_are_heard(assemble(system))
+    moved = [one for one in system.drives if one.starts_motion]
+    left_out = [str(one) for one in moved if not heard or (one.uniform_velocity is None and not one.vectors)]
+    return [f"vibration at the start is not included: {listed(left_out)}"] if left_out else []

@@ -67,7 +67,12 @@ def pressing(run: xr.Dataset, panel: Panel) -> Pressing:
         force = force.copy()
         force[:, 0] *= 1.0 - BEFORE / steps
     before = np.concatenate([position[:, :1], position[:, :-1]], axis=1)
-    return Pressing(start, interval, steps, force, (before + position) / 2.0)
+    middle = (before + position) / 2.0
+    if start > 0.5 * interval:
+        # The forces before a continued record have already bent the track.
+        force = np.concatenate([force, np.broadcast_to(-force[:, :1], force.shape)])
+        middle = np.concatenate([middle, np.broadcast_to(middle[:, :1], middle.shape)])
+    return Pressing(start, interval, steps, force, middle)
 
 
 def sampled(run: xr.Dataset, *names: str) -> tuple[float, float, int, list[Array]]:

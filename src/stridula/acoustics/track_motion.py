@@ -13,11 +13,12 @@ from ..connections import ends
 from ..system import System
 from .driven import FASTEST, Modes, respond
 from .driving import Driving, driving
+from .free_bodies import start_notes
 from .redriven import Moved, moved_by
 
 
 class TrackMotion:
-    """Modes of a track driven again by all forces of a system, at rest before the record.
+    """Modes of a track driven again by all forces of a system.
 
     Parameters
     ----------
@@ -51,7 +52,7 @@ class TrackMotion:
         self.start, self.interval, self.samples = given.start, given.interval, given.samples
         self.first, self.begins = given.first, given.pushed
         continues = "the record continues another one; vibration left from the earlier record is not included"
-        self.notes = [continues] if given.start > 0.5 * given.interval else []
+        self.notes = [continues] if given.start > 0.5 * given.interval else start_notes(system)
 
     @property
     def _is_coupled(self) -> bool:
@@ -78,7 +79,8 @@ class TrackMotion:
 
 
 def is_driven_otherwise(system: System, track: Any) -> bool:
-    """Return whether drives, connections or contacts at a fixed point act on a track."""
+    """Return whether drives, a start in motion, connections or contacts at a fixed point act on a track."""
+    moves = any(drive.starts_motion and drive.acted_on in (None, track) for drive in system.drives)
     joined = any(point.body == track for connection in system.connections for point in ends(connection))
     pushed = any(
         drive.fall is not None or (drive.push is not None and drive.acted_on == track) for drive in system.drives
@@ -88,4 +90,4 @@ def is_driven_otherwise(system: System, track: Any) -> bool:
         for contact in system.contacts
         for point in (contact.tip, contact.touched_point)
     )
-    return joined or pushed or touched or track.modes().damping_matrix is not None
+    return moves or joined or pushed or touched or track.modes().damping_matrix is not None

@@ -103,7 +103,8 @@ def simulate(
         meanings in the attributes. ``attrs["ended"]`` is ``finished`` or ``off the track``; ``attrs["scenario"]`` is
         TOML that repeats the run. ``attrs["notes"]`` has, separated by semicolons, the parts that the model describes
         only roughly: bending with waves under six thicknesses, bodies that turn near a critical speed, contacts that
-        vibrate near a cutoff, contacts and tracks without friction. Normal forces are compressive, tangential forces act on the track along its tangent.
+        vibrate near a cutoff, contacts and tracks without friction. Normal forces are compressive, tangential forces
+        act on the track along its tangent.
         Variables of the contact have the dimension ``contact`` if there are several. Each surface is one contact,
         unless `surface_rate` is ``"all"``: forces and counts are sums over its points, all other variables are means;
         ``surface_force`` and the other resultants of `analysis.surface` are over ``face``; variables that begin with

@@ -13,7 +13,6 @@ from .._kernels.friction import next_state, set_valued, sliding_ratio, state_rat
 from .._kernels.pressing import stored_in_one
 from ..arrays import Array
 from ..checks import ArgumentError
-from ..contact.stiffness import force_at, slopes_at
 from ..lowering import Assembly, ContactRows
 from ..lowering.blocks import Blocks
 from ..lowering.schemes import Scheme
@@ -57,6 +56,7 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
         carried[pressed, at.PAST_RATIO] = 0.5 * forces[forces[:, 0] > 0.0, 1] / forces[forces[:, 0] > 0.0, 0]
         carried[pressed, at.CLOSED_SHARE] = 1.0
         carried[pressed, at.STATUS] = np.where(start.slip_speeds[pressed] == 0.0, STICKING, SLIDING)
+        carried[pressed, at.STUCK_SHARE] = carried[pressed, at.STATUS] == STICKING
     modal, energies = np.stack([arrays.position, first]), np.zeros(at.ENERGIES)
     energies[at.STORED] = modes.stored_energy(modal) + stored_in_contacts(arrays, carried)
     return State(modal, np.zeros_like(modal), carried, energies)
@@ -149,7 +149,7 @@ class _Start:
                 # Signed by the sense of slip, as bristles may be bent either way.
                 sense = -1.0 if share == -1.0 else 1.0
                 state = carried[number, at.FRICTION_STATE]
-                middle = 0.5 * (state + next_state(law, laws, number, state, whole, self.step))
+                middle = 0.5 * (state + next_state(law, laws, number, state, sense * whole, self.step))
                 found = state_ratio(law, laws, number, middle, sense * whole)
                 ratios[i] = found * (sense * share if whole else float(number == i))
             elif whole:
@@ -247,7 +247,7 @@ class _Start:
         forces = np.zeros(len(self.gaps))
         for i, one in enumerate(self.arrays.contacts):
             if one.yields is not None:
-                forces[i] = force_at(one.yields, -float(self.gaps[i]), -float(self.gap_speeds[i]))
+                forces[i] = one.force_at(-float(self.gaps[i]), -float(self.gap_speeds[i]))
         # Both pairs of rows of a contact in space have its force.
         return forces[self.first]
 
@@ -257,8 +257,7 @@ class _Start:
         rates = np.zeros(len(self.gaps))
         for i, one in enumerate(self.arrays.contacts):
             if one.yields is not None and self.pressing[i] > 0.0:
-                elastic = force_at(one.yields, -float(self.gaps[i]))
-                rates[i] = -slopes_at(one.yields, elastic)[0] * self.gap_speeds[i]
+                rates[i] = -one.stiffness_at(-float(self.gaps[i])) * self.gap_speeds[i]
         return rates[self.first]
 
     def _turned(self, modal: Array) -> tuple[Array, Array]:

@@ -31,6 +31,8 @@ CAUSE = {
     "contact unsolved": "bodies squeezed between others, too much friction in several contacts, or too few sweeps",
     "energy created": "a step too long for the contact, numbers at the limits of arithmetic, or a fault of the model",
 }
+# Words for a status in the step that was not solved: the last is that of a contact that stopped in it.
+STATUS_IN_STEP = (*STATUS_WORDS, "sticking")
 # Longest list of contacts in a message, unless the first one alone is longer.
 LONGEST_WORDS = 150
 
@@ -64,7 +66,7 @@ def divergence_words(ended: str, time: float, step: float, contacts: str) -> str
 def contact_words(names: tuple[str, ...], carried: Array) -> str:
     """Return the last state of the contacts in words; of many, those with the largest normal forces."""
     lines = [
-        f"{name} {STATUS_WORDS[int(one[at.STATUS])]} at {one[at.ABSCISSA]:.6g} m with {one[at.LAST_NORMAL]:.4g} N "
+        f"{name} {STATUS_IN_STEP[int(one[at.STATUS])]} at {one[at.ABSCISSA]:.6g} m with {one[at.LAST_NORMAL]:.4g} N "
         f"normal, {one[at.LAST_TANGENTIAL]:.4g} N tangential"
         for name, one in zip(names, carried, strict=True)
     ]

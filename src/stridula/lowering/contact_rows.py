@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..contact import LAWS, PointContact
-from ..contact.stiffness import ContactStiffness
+from ..contact.stiffness import ContactStiffness, force_at, slopes_at
 from .coordinates import Coordinates
 from .turning_modes import TurningModes
 
@@ -49,6 +49,16 @@ class ContactRows:
         row = self.fixed[1].copy()
         row[slice(*self.circle.span)] = 0.0
         return row
+
+    def force_at(self, indentation: float, velocity: float) -> float:
+        """Return the normal force [N] of a compliant contact at an indentation [m] that grows with a velocity [m/s]."""
+        assert self.yields is not None
+        return force_at(self.yields, indentation, velocity)
+
+    def stiffness_at(self, indentation: float) -> float:
+        """Return the derivative of its elastic force by the indentation [N/m]."""
+        assert self.yields is not None
+        return slopes_at(self.yields, force_at(self.yields, indentation))[0]
 
     def round_at(self, place: float) -> Array:
         """Return the rows with the tip at an abscissa [m] of its circle."""

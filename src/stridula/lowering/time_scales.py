@@ -49,10 +49,10 @@ def expected_stiffness(arrays: Assembly, duration: float) -> Array:
         if one.yields is None:
             continue
         row = np.where(arrays.lumped, one.fixed[0], 0.0)
-        mobility = row @ row
+        mobility = float(row @ row)
         pull = -(row @ arrays.loads.T) @ factors.reshape(len(arrays.loads), -1) if len(arrays.loads) else np.zeros(1)
         pressing = max(float(pull.max()), 0.0)
-        gap = one.gap + one.fixed[0] @ arrays.position
+        gap = float(one.gap + one.fixed[0] @ arrays.position)
         speed = max(-float(one.fixed[0] @ arrays.velocity + lifts[:, number].min()), 0.0)
         energy = 0.5 * speed**2 + pressing * max(gap, 0.0)
         found.append(_steepest(one.yields.numbers, energy / mobility, OVERSHOOT * pressing / mobility, -gap))

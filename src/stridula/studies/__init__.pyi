@@ -13,6 +13,8 @@ from .points import Grid as Grid
 from .points import LatinHypercube as LatinHypercube
 from .points import Range as Range
 from .sobol import sensitivity as sensitivity
+from .step_checks import StepCheck as StepCheck
+from .step_checks import check_step as check_step
 from .surveys import squeal_survey as squeal_survey
 from .sweeps import sweep as sweep
 from .tables import survey_table as survey_table
