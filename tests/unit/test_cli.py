@@ -19,6 +19,7 @@ import scipy.io
 
 import stridula as st
 from stridula.analysis.record_card import facts_of as card
+from stridula.analysis.regimes import regime_of
 from stridula.cli import running
 from stridula.cli.doubts import doubts
 from stridula.cli.running import how_to_get_the_level
@@ -140,6 +141,14 @@ def test_every_command_names_doubtful_values_once_in_a_line(stridula):
 def test_a_run_leaves_garbage_collection_on(stridula):
     assert stridula("run", "squeal", *SHORT)[0] == 0
     assert gc.isenabled()
+
+
+def test_run_checks_its_step(stridula):
+    """With half the step in the words."""
+    code, out, err = stridula("run", "squeal", *SHORT, "--check-step")
+    assert (code, err) == (0, "")
+    assert "at half the step, 2.5e-06 s: " in out
+    assert "the step is fine enough for these results" in out
 
 
 def test_run_writes_record_and_figure_and_reports_the_result(stridula, tmp_path):
@@ -520,7 +529,7 @@ def test_the_card_begins_with_the_audible_tone():
 )
 def test_the_card_says_at_which_frequency(monkeypatch, regime, frequency, answer, pitch):
     record = st.load_scenario("squeal", {"duration": "2 ms"}).simulate()
-    found = {"regime": regime, "frequency": frequency, "confidence": 1.0}
+    found = regime_of(record) | {"regime": regime, "frequency": frequency, "confidence": 1.0}
     monkeypatch.setattr("stridula.analysis.record_card.regime_of", lambda run: found)
     rows = card(record)
     assert (rows["squeals"], rows.get("pitch")) == (f"{answer} (confidence 1.00)", pitch)

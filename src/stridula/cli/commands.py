@@ -146,6 +146,9 @@ def run(
     wav: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write the sound at two ears a metre above the track, as WAV.")
     ] = None,
+    check_step: Annotated[
+        bool, typer.Option("--check-step", help="Run it again at half the step and print how far the results move.")
+    ] = False,
 ) -> None:
     """Run a scenario and print the regime, pitch, forces and energies."""
     with _importing():
@@ -154,7 +157,7 @@ def run(
     overrides = _pairs(set_ or [])
     if duration is not None:
         overrides["simulation.duration"] = duration
-    run_scenario(name, overrides, out, plot, wav)
+    run_scenario(name, overrides, out, plot, wav, check_step)
 
 
 @app.command()

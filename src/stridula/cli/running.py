@@ -24,9 +24,14 @@ WHOLE = ("finished", "off the track")
 
 
 def run_scenario(
-    name: str, overrides: dict[str, Any], out: str | None, plot: str | None, wav: str | None = None
+    name: str,
+    overrides: dict[str, Any],
+    out: str | None,
+    plot: str | None,
+    wav: str | None = None,
+    check_step: bool = False,
 ) -> None:
-    """Run a scenario, write the requested files, and print a summary.
+    """Run a scenario, write the requested files, print a summary and, if asked for, how far half the step moves it.
 
     Raises
     ------
@@ -56,6 +61,19 @@ def run_scenario(
             words.append("no sound was written")
         raise Stopped("; ".join(words), INTERRUPTED if interrupted else FAILED) from None
     _finish(record, scenario, name, out, plot, wav)
+    if check_step:
+        _print_check(record)
+
+
+def _print_check(record: xr.Dataset) -> None:
+    from ..studies import check_step
+
+    try:
+        with bar("at half the step") as show:
+            found = check_step(record, watchers=[told_of_time(show)])
+    except Interrupted:
+        raise Stopped("the check of the step was interrupted", INTERRUPTED) from None
+    print(found)
 
 
 def _check_wav(wav: str, name: str, out: str | None, plot: str | None, scenario: Scenario) -> None:
