@@ -178,8 +178,7 @@ def _of_track(
     sample_rate: float | None,
 ) -> Part:
     name, starts = system.body_name(track), system.initial_equilibrium is not None
-    on_it = [number for number, contact in enumerate(system.contacts) if contact.path_body == track]
-    pressing = run.isel(contact=on_it) if "contact" in run.dims else run
+    pressing = _on_it(run, system, track)
     if starts:
         # It has been in equilibrium before.
         pressing = pressing.assign(normal_force=pressing["normal_force"] - pressing["normal_force"].isel(time=0))
@@ -198,6 +197,17 @@ def _of_track(
         (lambda: TrackMotion(run, system, track)) if otherwise else None,
     )
     return pressure, time, attributes
+
+
+def _on_it(run: xr.Dataset, system: System, track: Any) -> xr.Dataset:
+    """Return the contacts of a record that move along a track."""
+    numbers = [number for number, contact in enumerate(system.contacts) if contact.path_body == track]
+    if "contact" not in run.dims:
+        return run
+    names, shown = [system.contact_names[number] for number in numbers], run["contact"].values.tolist()
+    if not set(shown) & set(system.contact_names):
+        return run.isel(contact=numbers)
+    return run.sel(contact=[name for name in names if name in shown])
 
 
 def _of_beams(

@@ -17,8 +17,8 @@ from ..system import System
 from .air import Air
 from .bridges import Bridge, bridged_sound
 from .free_bodies import free_sound
+from .lone_tracks import lone_sound
 from .plane_sound import plane_sound
-from .track_sound import track_sound
 
 
 def radiate(
@@ -56,9 +56,10 @@ def radiate(
         ``run.sel(contact=[...])``.
     track : ModalBeam, ModalPlate, System or Bridge
         Source of the sound. A track need not be the body of the run, but must reach as far as it is pressed; without
-        its system, only contacts press it. For a system, that of the run, the sound is the sum over its bodies: in
-        space over all that have a surface, in the plane over tracks and slim beams. For a bridge, it is that of the
-        body driven by the recorded force on the support of a string.
+        its system, only the contacts along it press it, and notes name everything else that acts on it. For a system,
+        that of the run, the sound is the sum over its bodies: in space over all that have a surface, in the plane over
+        tracks and slim beams. For a bridge, it is that of the body driven by the recorded force on the support of a
+        string.
     listener : tuple of float, or sequence of tuples, optional
         Places of the listeners, x, y, z [m]: x along the track from its left end, y across it in its surface, from the
         axis of a beam or from the first edge of a plate, z above it, on the slider's side. A pair of ears a metre above
@@ -109,7 +110,7 @@ Sound = tuple[Array, Array, Array, dict[str, Any]]
 @singledispatch
 def _sound(track: Any, run: Any, listener: Any, bodies: Any, baffled: Any, air: Any, sample_rate: Any) -> Sound:
     _check_no_bodies(bodies)
-    return track_sound(run, track, listener, baffled is not False, air, sample_rate)
+    return lone_sound(run, track, listener, baffled is not False, air, sample_rate)
 
 
 @_sound.register
