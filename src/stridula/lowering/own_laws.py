@@ -70,8 +70,7 @@ def _ratio(law: FrictionLaw, code: int, numbers: Array, speed: float) -> float:
     """Return the ratio of steady sliding in the march."""
     if not law.has_state:
         return float(marched.sliding_ratio(code, numbers, 0, speed))
-    # A state of steady sliding stays the same over a step of any length.
-    return float(marched.state_ratio(code, numbers, 0, law.state_in_sliding(speed), speed, 1.0))
+    return float(marched.state_ratio(code, numbers, 0, law.state_in_sliding(speed), speed))
 
 
 def _curve(law: FrictionLaw, speeds: Array, ratios: Array) -> Iterator[tuple[str, str]]:
