@@ -11,7 +11,8 @@ Only duration and sample rate are given: ten samples in a period of the highest 
 
 Errors are the root mean square of the difference over that of the fluctuation, over all contacts: of the displacements
 of their points along x and y, and of their forces, which are means over samples. A reference is believed if that at a
-twentieth of the step lies within half a per cent of it; chaos prevents this in the others, which are left out.
+twentieth of the step lies within half a per cent of it; chaos prevents this in the others, which are left out. *Landed*
+counts the systems over one per cent in which a contact landed, *worst* is the number of the worst system.
 """
 
 from __future__ import annotations
@@ -139,6 +140,10 @@ class Found:
         Difference of the displacements of the two references.
     step : float
         Default step [s].
+    landings : int
+        Landings of its contacts at default settings.
+    unsolved : int
+        Steps out of tolerance at default settings.
     """
 
     kind: str
@@ -148,7 +153,9 @@ class Found:
     force: float
     sampled: float
     reference: float
-    step: float
+    step: float = nan
+    landings: int = 0
+    unsolved: int = 0
 
     @property
     def is_believed(self) -> bool:
@@ -178,7 +185,7 @@ def found_of(kind: str, law: str, number: int) -> Found:
     try:
         return compared(kind, law, number)
     except st.Diverged:
-        return Found(kind, law, number, nan, nan, nan, inf, nan)
+        return Found(kind, law, number, nan, nan, nan, inf)
 
 
 def compared(kind: str, law: str, number: int) -> Found:
@@ -211,6 +218,8 @@ def compared(kind: str, law: str, number: int) -> Found:
         error(points_of(slowly), at_low),
         error(points_of(coarser), points),
         step,
+        int(usual.landings.sum()),
+        int(usual.unsolved_steps.sum()) if "unsolved_steps" in usual else 0,
     )
 
 
@@ -236,11 +245,12 @@ def line(kind: str, law: str, found: list[Found]) -> str:
     head = f"{kind:<10} {law:<15}{len(kept):>4} of {len(found):<4}{stopped:>7}"
     if not kept:
         return head
-    over = sum(one.displacement > BAR for one in kept) / len(kept)
+    over = [one for one in kept if one.displacement > BAR]
+    share, landed = len(over) / len(kept), sum(one.landings > 0 for one in over)
     columns = ([one.displacement for one in kept], [one.force for one in kept], [one.sampled for one in kept])
     moved, forces, sampled = map(percent, columns)
     worst = max(kept, key=lambda one: one.displacement).number
-    return f"{head}{moved}{100.0 * over:>8.3g} %{worst:>7} {forces} {sampled}"
+    return f"{head}{moved}{100.0 * share:>8.3g} %{landed:>8} {worst:>7} {forces} {sampled}"
 
 
 def main() -> None:
@@ -254,8 +264,11 @@ def main() -> None:
     laws, kinds = [asked.law] if asked.law else LAWS, [asked.set] if asked.set else SETS
     numbers = range(SYSTEMS) if asked.number is None else [asked.number]
     triple = "   median  90th %    worst"
-    print("errors in per cent".ljust(44) + "displacements".ljust(44) + "forces".ljust(28) + "displacements, 2 kHz")
-    print(f"{'set':<10} {'law':<15}{'believed':<11}stopped{triple}  over 1 %  worst {triple} {triple}", flush=True)
+    print("errors in per cent".ljust(44) + "displacements".ljust(53) + "forces".ljust(28) + "displacements, 2 kHz")
+    print(
+        f"{'set':<10} {'law':<15}{'believed':<11}stopped{triple}  over 1 %  landed   worst {triple} {triple}",
+        flush=True,
+    )
     found, wrong = all_compared(list(kinds), list(laws), list(numbers)), []
     for kind in kinds:
         for law in laws:

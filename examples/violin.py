@@ -74,7 +74,7 @@ def bowed(place: float, before: float, after: float) -> st.System:
 
 def note(place: float) -> tuple[float, xr.Dataset]:
     """Bow force [N] and record of an attack that settles in Helmholtz motion."""
-    for share in (0.5, 0.6, 0.4, 0.7, 0.3, 0.8):
+    for share in (0.6, 0.5, 0.55, 0.65, 0.45, 0.4, 0.7, 0.3, 0.8):
         force = share * most(place)
         played = st.simulate(bowed(place, force, force), 0.4, sample_rate=48e3, probes=[])
         if analysis.bowed_motion(played, FUNDAMENTAL).motion == analysis.MOTIONS[0]:
@@ -82,7 +82,7 @@ def note(place: float) -> tuple[float, xr.Dataset]:
     raise RuntimeError(f"no attack at {place:g} of the length settles in Helmholtz motion")
 
 
-PLACES, SHARES = np.geomspace(0.05, 0.2, 7), np.geomspace(0.004, 4.0, 13)
+PLACES, SHARES = np.geomspace(0.06, 0.2, 7), np.geomspace(0.004, 4.0, 13)
 motions = []
 for place in PLACES:
     before, played = note(place)
@@ -119,7 +119,7 @@ panels[1].loglog(PLACES, [least(place) for place in PLACES], "k--", linewidth=1.
 panels[1].set(
     xlabel="place of the bow [lengths]", ylabel="bow force [N]", title="Narrow bow, 0.2 m/s", ylim=(2e-3, 1e2)
 )
-panels[1].set_xticks([0.05, 0.1, 0.2], ["0.05", "0.1", "0.2"], minor=False)
+panels[1].set_xticks([0.06, 0.1, 0.2], ["0.06", "0.1", "0.2"], minor=False)
 panels[1].xaxis.set_minor_formatter("")
 panels[1].legend(loc="upper right", ncols=2, fontsize="small")
 figure.savefig("violin.png", dpi=110)

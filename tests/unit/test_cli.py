@@ -19,6 +19,7 @@ import scipy.io
 
 import stridula as st
 from stridula.analysis.record_card import facts_of as card
+from stridula.analysis.regimes import regime_of
 from stridula.cli import running
 from stridula.cli.doubts import doubts
 from stridula.cli.running import how_to_get_the_level
@@ -528,7 +529,7 @@ def test_the_card_begins_with_the_audible_tone():
 )
 def test_the_card_says_at_which_frequency(monkeypatch, regime, frequency, answer, pitch):
     record = st.load_scenario("squeal", {"duration": "2 ms"}).simulate()
-    found = {"regime": regime, "frequency": frequency, "confidence": 1.0}
+    found = regime_of(record) | {"regime": regime, "frequency": frequency, "confidence": 1.0}
     monkeypatch.setattr("stridula.analysis.record_card.regime_of", lambda run: found)
     rows = card(record)
     assert (rows["squeals"], rows.get("pitch")) == (f"{answer} (confidence 1.00)", pitch)

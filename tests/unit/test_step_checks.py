@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 import stridula as st
+from stridula.analysis.record_card import facts_of
 from stridula.studies.step_checks import growth_of
 
 MASS = st.PointMass(1.0)
@@ -61,3 +64,13 @@ def test_continued_records_are_refused():
     second = st.simulate(system, 1.0, start=first, probes=[])
     with pytest.raises(ValueError, match=r"run must begin at its start, got one that goes on from 1 s"):
         st.check_step(second)
+
+
+def test_the_card_says_where_events_last_few_steps():
+    """Stick and slip in seven steps a period; in fifty there is no such line."""
+    coarse, fine = (
+        on_a_belt(st.StaticKinetic(0.6, 0.3), duration=60.0, step=step, sample_rate=1.0 / step) for step in (0.2, 0.02)
+    )
+    words = str(facts_of(coarse).get("coarse step"))
+    assert re.match(r"[\d.]+ steps in a period", words)
+    assert "coarse step" not in facts_of(fine)

@@ -20,6 +20,7 @@ from ..records.checked import record
 from ..records.variables import ENERGY, STATUS_WORDS
 from ..system import System
 from .bowed import bowed_motion
+from .coarse_steps import coarse
 from .phases import bursts
 from .regimes import LIMITS, regime_of, tones_beside
 from .several_contacts import loads, mean_shares
@@ -117,20 +118,24 @@ def facts_of(record: xr.Dataset, system: System | None = None, level: str = ASK_
         How loud it is, in words, or how that is found; no line says it where empty.
     """
     lines = _ending(record)
+    few = ""
     if record.sizes["time"] > 1:
-        lines |= _heard(by_point(record)) | ({"sound level": level} if level else {}) | _strings(record, system)
+        found = regime_of(by_point(record))
+        lines |= _heard(record, found) | ({"sound level": level} if level else {}) | _strings(record, system)
+        few = coarse(found, float(record.attrs["step"]))
     if record.sizes["time"]:
         lines |= _contact(record) | _energy(record)
+    if few:
+        lines["coarse step"] = f"{few}; check_step or --check-step tells how far half the step moves the results"
     return lines | _notes(record) | _computation(record)
 
 
-def _heard(record: xr.Dataset) -> dict[str, str]:
+def _heard(record: xr.Dataset, found: Mapping[str, float | str]) -> dict[str, str]:
     """Return the regime of a run and its pitch."""
-    found = regime_of(record)
     regime, interval = str(found["regime"]), record.attrs["sample_interval"]
     answer = "yes" if regime == SQUEAL else f"no, {regime}"
     pitch = _pitch(regime, float(found["frequency"]), interval)
-    return {"squeals": f"{answer} (confidence {found['confidence']:.2f})"} | ({"pitch": pitch} if pitch else {})
+    return {"squeals": f"{answer} (confidence {float(found['confidence']):.2f})"} | ({"pitch": pitch} if pitch else {})
 
 
 def _force_over_time(record: xr.Dataset) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,7 +14,7 @@ from ..arrays import Array
 from ..bodies import AxisymmetricBody, SolidBody
 from ..bodies.solid_overlays import overlaid
 from ..bodies.solid_places import FacePoints
-from ..checks import ArgumentError, choice, instance
+from ..checks import ArgumentError, choice, finite, instance
 from ..declared import Each, Number, Position, check_declared
 from .coulomb import Coulomb
 from .facing import BEFORE, words_of
@@ -26,6 +27,9 @@ from .stiffness import ContactStiffness, checked_stiffness, per_area
 FACING = 0.5
 # Largest overlap of faces, relative to the size of the sliding one, that is due to rounding of coordinates.
 OVERLAP = 1e-6
+# Least share of the velocity of a turning track along its facets, whose normals are not those of the round surface, and
+# distance from the axis, relative to the size of the face, that is due to rounding.
+ALONG, ON_THE_AXIS = 0.98, 1e-9
 
 
 @dataclass(frozen=True)
@@ -55,6 +59,11 @@ class SurfaceContact:
     tangent : sequence of float, optional
         World components of the first tangent; if left out, the direction in which the track turns or, if it does not,
         as for a `PointContact`.
+    turning : tuple, optional
+        Axis, origin and speed of a meshed track that turns under the face: direction of the axis, of any length, a
+        point on it [m], and the angular velocity about it, counter-clockwise with the axis pointing at the viewer
+        [rad/s]. Each point of the track then moves across the axis. The vibration of the track is described in a frame
+        at rest: unlike those of a turning `AxisymmetricBody`, its waves are not carried round.
     overlay : bool, optional
         Whether points are those of the intersections of the faces of both bodies, which must be flat: more points,
         which transmit a uniform pressure exactly between meshes that do not match.
@@ -78,6 +87,7 @@ class SurfaceContact:
     tangent: Annotated[Sequence[float], Each(Number())] | None = None
     overlay: bool = False
     name: str = "surface"
+    turning: tuple[Sequence[float], Sequence[float], float] | None = None
 
     def __post_init__(self) -> None:
         instance("body", self.body, SolidBody)
@@ -92,6 +102,8 @@ class SurfaceContact:
                     raise ArgumentError(name, "be left out except on a SolidBody", given)
         instance("name", self.name, str)
         check_declared(self)
+        if self.turning is not None:
+            object.__setattr__(self, "turning", self._checked_turning(self.turning))
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
         self.contacts  # noqa: B018, computed now, so that errors are raised here
 
@@ -135,7 +147,7 @@ class SurfaceContact:
                 friction=self.friction,
                 gap=max(gap + self.gap, 0.0),
                 normal=tuple(facing.tolist()),
-                tangent=self._tangent(track, facing),
+                **self._directions(track, place, facing),
                 stiffness=None if self.stiffness is None else per_area(self.stiffness, area),  # type: ignore[arg-type]
                 name=f"{self.name} {number + 1}",
                 surface=self.name,
@@ -144,8 +156,43 @@ class SurfaceContact:
             found.append(contact)
         return tuple(found)
 
-    def _tangent(self, track: Any, facing: Array) -> tuple[float, ...] | None:
+    def _directions(self, track: Any, place: Array, facing: Array) -> dict[str, Any]:
+        """Return the first tangent of a point and the velocity of the track along it, as arguments of its contact."""
         if self.tangent is not None:
-            return tuple(self.tangent)
-        moved = getattr(track, "turning_velocity", np.zeros(3))
-        return tuple(moved.tolist()) if moved.any() else None
+            return {"tangent": tuple(self.tangent)}
+        if self.turning is None:
+            moved = getattr(track, "turning_velocity", np.zeros(3))
+            return {"tangent": tuple(moved.tolist())} if moved.any() else {}
+        axis, origin, speed = self.turning
+        moved = speed * np.cross(axis, place - np.array(origin))
+        size = float(np.linalg.norm(moved))
+        if size <= ON_THE_AXIS * abs(speed) * float(np.ptp(self.points.place, axis=0).max()):
+            return {}
+        along = moved - (moved @ facing) * facing
+        if np.linalg.norm(along) < ALONG * size:
+            got = f"an angle of {np.degrees(np.arccos(np.linalg.norm(along) / size)):.3g} degrees at {words_of(place)}"
+            raise ArgumentError("turning", "move the track along its surface", self.turning, got=got)
+        # Flat faces of elements stand for the round surface, along which the track moves.
+        return {"tangent": tuple(along.tolist()), "surface_velocity": (size, 0.0)}
+
+    def _checked_turning(self, given: Any) -> tuple[tuple[float, ...], tuple[float, ...], float]:
+        """Return a unit vector along the axis, its origin and the speed."""
+        if self.track.kind != SolidBody.kind:
+            raise ArgumentError("turning", "be left out except on a SolidBody: other tracks have their own", given)
+        if self.tangent is not None:
+            raise ArgumentError(
+                "tangent", "be left out with turning, whose direction is the first tangent", self.tangent
+            )
+        if isinstance(given, str) or not isinstance(given, Sequence) or len(given) != 3:
+            raise ArgumentError("turning", "be an axis, an origin and a speed", given)
+        axis, origin = (Each(Number()).check(f"turning[{k}]", given[k]) for k in (0, 1))
+        speed = finite("turning[2]", given[2])
+        for number, one in enumerate((axis, origin)):
+            if len(one) != 3:
+                raise ArgumentError(f"turning[{number}]", "be three numbers", one)
+        length = math.hypot(*axis)
+        if not 0.0 < length < math.inf:
+            raise ArgumentError("turning[0]", "be a direction, of a length above 0", axis)
+        if speed == 0.0:
+            raise ArgumentError("turning[2]", "not be 0", speed)
+        return tuple(one / length for one in axis), origin, speed

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..arrays import Array
+from ..bodies import SolidBody
 from ..checks import STATUS_WORDS, ArgumentError, choice, finite, one_or_each
 from ..system import System
 from .structure import SLIDING, Structure
@@ -62,6 +63,8 @@ def given_velocity(velocity: Velocity | None, structure: Structure, status: Sequ
     prescribed = structure.prescribed(words)
     takes = np.array([word == SLIDING for word in words]) & (prescribed == 0.0)
     found = one_or_each("velocity", velocity, finite, count)
+    asked = np.broadcast_to(np.array(found, dtype=float) != 0.0, count)
+    _check_told(structure.system, np.flatnonzero(takes & asked).tolist())
     if not isinstance(found, tuple):
         if not found:
             raise ArgumentError("velocity", "not be 0", velocity)
@@ -72,6 +75,19 @@ def given_velocity(velocity: Velocity | None, structure: Structure, status: Sequ
         if one and not takes[k]:
             raise ArgumentError(f"velocity[{k}]", f"be 0: {_why(bool(prescribed[k]))}", one)
     return np.array(found)
+
+
+def _check_told(system: System, numbers: Sequence[int]) -> None:
+    """Raise ValueError if points of a surface on a mesh would slide along a tangent that nobody has chosen."""
+    for number in numbers:
+        one = system.contacts[number]
+        touched = one.touched_point
+        if one.surface and one.tangent is None and touched is not None and touched.body.kind == SolidBody.kind:
+            raise ArgumentError(
+                "velocity",
+                f"be left out for {one.surface}, whose points would all slide in one direction",
+                got="no direction; give its SurfaceContact turning=(axis, origin, speed), or a tangent",
+            )
 
 
 def _why(is_prescribed: bool) -> str:

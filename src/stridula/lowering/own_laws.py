@@ -20,6 +20,8 @@ CODES = {
 }
 # Slip speeds at which formulas are compared, over those up to which a curve is characteristic.
 DECADES_BELOW, DECADES_ABOVE, SPEEDS = 8, 3, 441
+# Slip [m] after which a contact has forgotten its first state.
+FAR = 1e9
 # Relative differences that are due to rounding; relative step of a derivative, and its error over ratio and speed.
 EQUAL, STEP, SLOPE_ERROR = 1e-9, 1e-5, 1e-6
 
@@ -57,6 +59,8 @@ def _differences(law: FrictionLaw) -> Iterator[tuple[str, str]]:
     if law.set_valued and not np.isclose(law.holding, held := numbers[0, 0], rtol=EQUAL):
         yield f"have the holding ratio {held:.6g}", f"{law.holding:.6g}"
     yield from _slopes(law, speeds, ratios)
+    if law.has_state:
+        yield from _states(law, code, numbers, speeds)
 
 
 def law_of_march(law: FrictionLaw) -> tuple[int, Array]:
@@ -70,8 +74,21 @@ def _ratio(law: FrictionLaw, code: int, numbers: Array, speed: float) -> float:
     """Return the ratio of steady sliding in the march."""
     if not law.has_state:
         return float(marched.sliding_ratio(code, numbers, 0, speed))
-    # A state of steady sliding stays the same over a step of any length.
-    return float(marched.state_ratio(code, numbers, 0, law.state_in_sliding(speed), speed, 1.0))
+    return float(marched.state_ratio(code, numbers, 0, _steady_state(law, code, numbers, speed), speed))
+
+
+def _steady_state(law: FrictionLaw, code: int, numbers: Array, speed: float) -> float:
+    """Return the state that the march reaches in sliding, whatever it begins with."""
+    return float(marched.next_state(code, numbers, 0, law.state_in_sliding(speed), speed, FAR / speed))
+
+
+def _states(law: FrictionLaw, code: int, numbers: Array, speeds: Array) -> Iterator[tuple[str, str]]:
+    """Yield differences of the internal state in steady sliding."""
+    for speed in speeds.tolist():
+        own, marches = law.state_in_sliding(speed), _steady_state(law, code, numbers, speed)
+        if not np.isclose(own, marches, rtol=EQUAL, atol=0.0):
+            yield f"have the state_in_sliding({speed:.4g}) of {marches:.6g} {law.state_units}", f"{own:.6g}"
+            return
 
 
 def _curve(law: FrictionLaw, speeds: Array, ratios: Array) -> Iterator[tuple[str, str]]:

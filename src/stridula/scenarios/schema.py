@@ -75,7 +75,7 @@ class Simulation(Table):
     scheme: Literal["exact modal", "central difference"] = "exact modal"
     """exact modal or central difference"""
     step: is_.Time | None = None
-    """time step, a fixed fraction of the scheme's limit if left out [s]"""
+    """time step; if left out, from the modes kept and from lumped masses on springs and contacts [s]"""
     sample_rate: is_.Frequency = 100e3
     """sample rate of the record [Hz]"""
     surface_rate: is_.FrequencyOrAll | None = None
