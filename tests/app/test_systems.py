@@ -127,6 +127,47 @@ def test_two_rods_on_a_beam_are_heard_together():
     assert alone.shape[0] == 2
 
 
+ALONG = '[[contacts]]\ntip = { body = "back" }\ntrack = { kind = "beam", body = "track" }\nat = 0.7\n'
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ('[[drives]]\nkind = "force"\nbody = "track"\npoint = 0.3\ny = 1.0\n', "force"),
+        ('[[connections]]\nkind = "spring"\nfirst = { body = "track", point = 0.3 }\nstiffness = 1e4\n', "a spring"),
+        (ALONG.replace("at = 0.7", "").replace('"beam", ', '"point", point = 0.7, '), "contact 3"),
+    ],
+)
+def test_the_page_says_why_a_track_under_other_forces_has_no_pressure(more, words):
+    text = TWO_RODS.replace("[simulation]", f"{more}[simulation]")
+    sources = playable("", text, {}).sources
+    assert "pressure" not in sources
+    assert sources["force"].words.endswith(
+        f" There is no sound pressure, as more than contacts along it drives the track: {words}."
+    )
+
+
+def test_the_page_says_which_bodies_the_pressure_lacks():
+    words = playable("", TWO_RODS, {}).sources["pressure"].words
+    assert words.endswith("from contact forces. Not included: the sound of front, back.")
+    weighed = TWO_RODS.replace("[simulation]", '[[drives]]\nkind = "gravity"\n[simulation]')
+    assert "pressure" in playable("", weighed, {}).sources
+
+
+@pytest.mark.parametrize("later", [False, True])
+def test_forces_at_rest_make_no_blow(later):
+    """In equilibrium from the start on, and where one begins to listen in the middle of a stroke."""
+    settled = '[[drives]]\nkind = "initial equilibrium"\nstatus = "sticking"\n[simulation]'
+    blow = Instrument(playable("", TWO_RODS, {}))
+    loud = np.concatenate([part.sound for part in blow.play(2400) if isinstance(part, Part)])
+    still = Instrument(playable("", TWO_RODS.replace("[simulation]", settled), {}))
+    if later:
+        still.live.advance(480)
+        still.source.begin()
+    sound = np.concatenate([part.sound for part in still.play(2400) if isinstance(part, Part)])
+    assert np.abs(sound).max() < 1e-3 * np.abs(loud).max()
+
+
 @pytest.mark.parametrize(
     ("key", "share", "goes_on"),
     [

@@ -19,7 +19,7 @@ from .drawing import drawing_of
 from .last_seconds import LastSeconds
 from .parts import THINNED, Part, Stop
 from .playable import Playable
-from .sources import Heard, Source, source_of
+from .sources import Heard, Source, heard_from, source_of
 
 RATE = 48_000
 # Time after which a tip that sticks under a constant force, or is off the track, begins another stroke [s].
@@ -123,7 +123,7 @@ class Instrument:
         if longer is not None and played.scenario.step is None:
             played = played.stepped(longer)
         drawing = self.drawing if played.system == self.drawing.system else drawing_of(played.system)
-        track, steps, contacts = self.live.system.track, self.live.ratio, len(self.live.system.contacts)
+        before = heard_from(self.live)
         what = (played.system, played.probes, played.scenario.scheme, played.scenario.step)
         goes_on = self.is_of(played) and not self.ended
         if goes_on:
@@ -131,8 +131,7 @@ class Instrument:
         else:
             self.live.begin(*what)
         name, source = _offered(self.wanted, played), self.source
-        now = (self.live.system.track, self.live.ratio, len(self.live.system.contacts))
-        if (track, steps, contacts) != now or name != self.name:
+        if before != heard_from(self.live) or name != self.name:
             source = source_of(name, self.live)
         self._now_plays(played, revision, name, source)
         self.longer, self.drawing = longer, drawing

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Protocol
 
 import numpy as np
 
+from ..acoustics.hearable import hearable
+from ..acoustics.panels import is_flat
 from ..acoustics.streamed import StreamedSound
 from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate
+from ..checks import listed
 from ..connections import ends
 from ..integration.live import LiveChunk, LiveMarch
 from ..records import Probe
@@ -41,7 +45,12 @@ class Source:
 
 
 SOURCES = {
-    "pressure": Source("Sound pressure", "Pa", 0.1, "The sound pressure half a metre above the track, in a baffle."),
+    "pressure": Source(
+        "Sound pressure",
+        "Pa",
+        0.1,
+        "The sound pressure half a metre above the track, in a baffle, from contact forces.",
+    ),
     "force": Source("Contact force", "N", 20.0, "The normal force between tip and track."),
     "acceleration": Source("Track acceleration", "m/s²", 50.0, "The acceleration of the track's centre."),
     "friction": Source("Friction force", "N", 20.0, "The friction force on the track."),
@@ -67,13 +76,19 @@ def sources_of(system: System, probes: tuple[Probe, ...]) -> dict[str, Source]:
     probes : tuple of probe
         Its probes; the first is an acceleration.
     """
-    found = {"pressure": SOURCES["pressure"]} if _radiates(system) else {}
+    track = system.contacts[0].path_body
+    sounds = track is not None and is_flat(track)
+    driven = [*_others_on(system, track)] if sounds else []
+    found = {"pressure": _with(SOURCES["pressure"], _silent(system, track))} if sounds and not driven else {}
     more = {f"probe {number}": _of_probe(probe, system) for number, probe in enumerate(probes[1:], 1)}
     on_supports = {name: one for name, one in more.items() if one.name.startswith("Support force")}
     known = TOGETHER if len(system.contacts) > 1 else SOURCES
     # The normal force on a point pressed on a belt is constant.
     is_on_track = system.contacts[0].path_body is not None
     forces = {name: known[name] for name in (("force", "friction") if is_on_track else ("friction", "force"))}
+    if driven:
+        words = f" There is no sound pressure, as more than contacts along it drives the track: {listed(driven)}."
+        forces["force"] = _with(forces["force"], words)
     acceleration = SOURCES["acceleration"] if is_on_track else TIP_ACCELERATION
     return {**found, **on_supports, **forces, "acceleration": acceleration, **more}
 
@@ -85,12 +100,30 @@ def _of_probe(probe: Any, system: System) -> Source:
     return Source(name, unit, FULL_SCALES.get(variable.units, 1.0), f"A probe of the scenario: {variable.long_name}.")
 
 
-def _radiates(system: System) -> bool:
-    """Return whether a beam or a plate is driven only by tips that slide along it."""
-    track = system.contacts[0].path_body
-    others = [point.body for connection in system.connections for point in ends(connection)]
-    others += [drive.acted_on for drive in system.drives]
-    return track is not None and track not in others and all(one.path_body == track for one in system.contacts)
+def _with(source: Source, words: str) -> Source:
+    """Return a source with more words."""
+    return replace(source, words=source.words + words)
+
+
+def _others_on(system: System, track: Any) -> Iterator[str]:
+    """Yield what drives a track besides contacts that move along it, in words; weight alone does not sound."""
+    for connection in system.connections:
+        if any(point.body == track for point in ends(connection)):
+            yield f"a {connection.kind}"
+    for drive in system.drives:
+        if drive.acted_on == track:
+            yield drive.kind
+        elif drive.acted_on is None and drive.starts_motion:
+            yield "a mode of vibration at the start"
+    for name, contact in zip(system.contact_names, system.contacts, strict=True):
+        if contact.path_body != track or contact.tip.body == track:
+            yield name
+
+
+def _silent(system: System, track: Any) -> str:
+    """Return words on the bodies whose sound is not included."""
+    others = [system.body_name(body) for body in hearable(system) if body != track]
+    return f" Not included: the sound of {listed(others)}." if others else ""
 
 
 class Heard(Protocol):
@@ -109,8 +142,9 @@ class Heard(Protocol):
 class Pressure:
     """The sound pressure above the middle of a track."""
 
-    def __init__(self, track: ModalBeam | ModalPlate, contacts: int, interval: float, steps: int) -> None:
-        self.sounds = [_sound(track, interval, steps).copy() for _ in range(contacts)]
+    def __init__(self, system: System, interval: float, steps: int) -> None:
+        self.sounds = [_sound(system.track, interval, steps).copy() for _ in system.contacts]
+        self.interval, self.starts_at_rest = interval, system.initial_equilibrium is not None
         self.begin()
 
     def begin(self) -> None:
@@ -118,12 +152,17 @@ class Pressure:
         for sound in self.sounds:
             sound.begin()
         self.places: list[float | None] = [None] * len(self.sounds)
+        self.rest: Array | None = None
 
     def heard(self, chunk: LiveChunk) -> Array:
         """Return the pressure over a chunk [Pa]."""
         forces, abscissas = chunk.contacts["normal_force"], chunk.contacts["contact_position"]
+        if self.rest is None:
+            # Forces in equilibrium, or of a stroke that goes on, have already bent the track.
+            is_bent = self.starts_at_rest or chunk.time[0] > 1.5 * self.interval
+            self.rest = forces[:, :1] if is_bent else np.zeros((len(forces), 1))
         heard = []
-        for number, (sound, force, places) in enumerate(zip(self.sounds, forces, abscissas, strict=True)):
+        for number, (sound, force, places) in enumerate(zip(self.sounds, forces - self.rest, abscissas, strict=True)):
             last = self.places[number]
             before = np.concatenate([places[:1] if last is None else [last], places[:-1]])
             self.places[number] = float(places[-1])
@@ -192,10 +231,16 @@ class OfProbe:
         return self
 
 
+def heard_from(live: LiveMarch) -> tuple[Any, ...]:
+    """Return the parts of a live march on which sources of its sound depend."""
+    system = live.system
+    return system.track, live.ratio, len(system.contacts), system.initial_equilibrium is not None
+
+
 def source_of(name: str, live: LiveMarch) -> Heard:
     """Return the sound of a motion by name, starting from silence."""
     if name == "pressure":
-        return Pressure(live.system.track, len(live.system.contacts), live.interval, live.ratio)
+        return Pressure(live.system, live.interval, live.ratio)
     if name in ("force", "friction"):
         return OfContacts("normal_force" if name == "force" else "tangential_force")
     return OfProbe(int(name.removeprefix("probe ")) if name.startswith("probe ") else 0)
