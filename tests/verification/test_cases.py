@@ -10,14 +10,17 @@ from documented import documented
 
 import stridula as st
 from stridula.verification import (
+    clockwork,
     falling,
     impacts,
     instabilities,
     jams,
     laws,
+    linings,
     orders,
     partial_slip,
     plates,
+    shaken,
     sliders,
     stability,
     strings,
@@ -204,6 +207,63 @@ def test_a_string_out_of_tune_falls_short(monkeypatch):
     monkeypatch.setattr(strings.Bowed, "string", property(lambda self: sharp))
     short = {row.quantity for row in strings.motion(case, case.run(), "bow") if not row.holds}
     assert "bow: period" in short
+
+
+def test_a_mass_on_a_stiffer_contact_vibrates_otherwise(monkeypatch):
+    """Negative control: half of the change of stiffness is that of frequency, also where it is whole turns."""
+    contact, more = linings.PointContact, 1.0 + 2.0 / linings.PERIODS
+    monkeypatch.setattr(linings, "PointContact", lambda *on, stiffness: contact(*on, stiffness=more * stiffness))
+    assert missed(linings.vibration()) >= {f"{kilo} kHz: frequency" for kilo in (1, 10, 30, 100)}
+
+
+def test_balls_on_a_stiffer_wall_bounce_otherwise(monkeypatch):
+    """Negative control: 5 % of stiffness is 2 % of force and of time."""
+    contact = linings.PointContact
+
+    def stiffer(*on, stiffness):
+        return contact(*on, stiffness=replace(stiffness, modulus=1.05 * stiffness.modulus))
+
+    monkeypatch.setattr(linings, "PointContact", stiffer)
+    short = missed(linings.impact())
+    assert sum(name.endswith("largest force") for name in short) == len(linings.BALLS)
+    assert sum(name.endswith("time of contact") for name in short) == len(linings.BALLS)
+
+
+def test_a_lining_of_another_friction_falls_short(monkeypatch):
+    """Negative control: friction 2 % off."""
+    for name, values in (("SQUEALS", (1e3,)), ("SMALL", (0.8,)), ("LARGE", (0.9,))):
+        monkeypatch.setattr(linings, name, values)
+    run = linings.Lined.run
+    monkeypatch.setattr(
+        linings.Lined, "run", lambda self, *words: run(replace(self, friction=1.02 * self.friction), *words)
+    )
+    assert {"1000 Hz, friction 0.8: growth", "1000 Hz, friction 0.9, cycle: swing"} <= missed(linings.squeal())
+
+
+@pytest.mark.parametrize("name", ["static and kinetic", "LuGre"])
+def test_stick_slip_in_few_steps_under_another_law_falls_short(monkeypatch, name):
+    """Negative control: static friction 2 % off."""
+    right, run = clockwork.LAWS[name], clockwork.Slider.run
+    off = replace(right, static=1.02 * right.static)
+    monkeypatch.setattr(clockwork, "LAWS", {name: right})
+    monkeypatch.setattr(clockwork.Slider, "run", lambda self, *words: run(replace(self, friction=off), *words))
+    assert f"{name}, belt 0.4 m/s, 50 steps: swing" in missed(clockwork.clockwork())
+
+
+@pytest.mark.parametrize("build", [shaken.by_a_force, shaken.through_a_spring])
+def test_a_shaken_track_without_its_system_falls_short(monkeypatch, build):
+    """Negative control: contacts alone are heard, and none presses."""
+    radiate = shaken.radiate
+    monkeypatch.setattr(shaken, "radiate", lambda run, _, places, bodies: radiate(run, bodies[0], places))
+    assert not any(row.holds for row in build(shaken.beam(), "beam").rows()[0])
+
+
+def test_a_beam_shaken_through_a_softer_spring_falls_short(monkeypatch):
+    """Negative control: 2 % of stiffness."""
+    spring = shaken.Spring
+    soft = {"stiffness": 0.98 * shaken.SPRING, "direction": "y"}
+    monkeypatch.setattr(shaken, "Spring", lambda *ends, **_: spring(*ends, **soft))
+    assert not all(row.holds for row in shaken.through_a_spring(shaken.beam(), "beam").rows()[0])
 
 
 class LazyStart(st.CentralDifference):

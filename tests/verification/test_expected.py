@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from math import atan, pi, radians
+from math import atan, gamma, pi, radians
 
 import numpy as np
 import pytest
 
 import stridula as st
 from stridula.verification import (
+    clockwork,
     jams,
     laws,
+    linings,
     partial_slip,
+    shaken,
     sliders,
     sounding_spheres,
     stability,
@@ -42,6 +45,38 @@ def test_belt():
     assert known.slip + known.stick == pytest.approx(3.658799, abs=5e-7)
     assert (known.lowest, known.highest) == pytest.approx((0.174306, 1.075694), abs=5e-7)
     assert known.slowest == pytest.approx(-0.901388, abs=5e-7)
+
+
+@pytest.mark.parametrize("belt", [clockwork.SLOWER, clockwork.FASTER])
+def test_stick_slip_from_stop_to_start_is_that_of_the_closed_form(belt):
+    law = clockwork.LAWS["static and kinetic"]
+    known = on_belts.stick_slip(clockwork.slider(law, belt))
+    found = clockwork.cycle(law, belt)
+    assert found == pytest.approx((known.slip + known.stick, known.lowest, known.highest), rel=1e-9)
+
+
+def test_a_lining_flutters_as_hoffmanns_contact():
+    lined, model = linings.Lined(1e3, 0.9), mode_coupling.hoffmann()
+    assert lined.exponents() / lined.rate == pytest.approx(model.exponents(0.9), rel=1e-9)
+
+
+def test_the_time_of_an_impact():
+    """Printed as 2.94 depth / speed (Love 1927, section 140; Johnson 1985, section 11.4)."""
+    exact = 0.8 * pi**0.5 * gamma(0.4) / gamma(0.9)
+    assert pytest.approx(exact, abs=5e-7) == linings.LASTS
+    assert round(exact, 2) == 2.94
+
+
+@pytest.mark.parametrize("surface", [shaken.plate(), shaken.beam()], ids=["plate", "beam"])
+def test_closed_forms_of_shaken_tracks_have_unit_modal_mass(surface):
+    """The modes at points of Gauss, whose masses add up to that of the track."""
+    (left, right), (low, high) = surface.sides
+    (x, wide), (y, deep) = (np.polynomial.legendre.leggauss(30) for _ in range(2))
+    x, y = (0.5 * (a + b + (b - a) * one) for (a, b), one in zip(surface.sides, (x, y), strict=True))
+    mass = surface.track.total_mass / 4.0 * np.outer(wide, deep).ravel()
+    shapes = surface.shapes(*(part.ravel() for part in np.meshgrid(x, y, indexing="ij")))
+    np.testing.assert_allclose(shapes.T @ (mass[:, None] * shapes), np.eye(surface.angular.size), atol=1e-9)
+    assert (right - left, high - low) == (shaken.LENGTH, shaken.STRIP if low else shaken.WIDTH)
 
 
 def test_hoffmann():
