@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 import stridula
+import stridula as st
 
 FOLDER = Path(__file__).resolve().parents[2] / "benchmarks"
 BENCHMARKS = sorted(
@@ -160,3 +161,14 @@ def test_the_suite_has_every_section():
     suite = (FOLDER / "suite.py").read_text(encoding="utf-8")
     listed = suite.partition("SECTIONS = (")[2].partition(")")[0]
     assert {name.strip() for name in listed.split(",") if name.strip()} == sections
+
+
+def test_shares_of_damped_contacts_that_open_while_indented_are_shares(monkeypatch):
+    """A random system in which a lining is let go before it has come out."""
+    monkeypatch.setattr(sys, "argv", ["", "--short"])
+    monkeypatch.syspath_prepend(FOLDER)
+    system, *_ = import_module("random_systems").system_of("stiffness", "static-kinetic", 40)
+    step = 1e-4 / 3.0
+    run = st.simulate(system, 600 * step, step=step, sample_rate=1.0 / step, probes=[])
+    assert run.status_share.values.min() >= 0.0
+    assert run.status_share.values.max() <= 1.0

@@ -30,7 +30,9 @@ def share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, 
     closed = held(carried, base + at.CLOSED_SHARE, run, zero)
     opened = choose(touched, choose(apart, last_normal, zero), zero) > 0.0
     if anywhere(opened):
-        left = closed - 1.0 + closed_share(choose(opened, last_normal, 1.0), last_tangential, gap, w[0], w[1])
+        # A damped contact ceases to press while it is still indented.
+        above = choose(gap > 0.0, gap, zero)
+        left = closed - 1.0 + closed_share(choose(opened, last_normal, 1.0), last_tangential, above, w[0], w[1])
         closed = choose(opened, choose(left < 0.0, zero, left), closed)
     stayed = choose(stuck, closed, zero)
     slips = choose(stuck, status, zero) > SLIDING - 0.5
