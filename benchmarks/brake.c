@@ -20,7 +20,7 @@ enum { PAIR = 2 * CARRIED, MOST_TRIALS = 100, IN_VAIN = 3, NEWTON = 12, STEPS_OF
 /* What a step knows of all contacts; `size` is three times their number. */
 typedef struct {
     int count, size;
-    const double *w, *opening, *stiffness, *mu;
+    const double *w, *opening, *stiffness, *reach, *mu;
     double *carried, *free, *u, *forces, *give, *beyond, *ratio, *kept_forces, *kept_u, *m, *x, *along;
     int *status, *wanted, *kept_status, *may_touch, *broke, *equation;
     double late;
@@ -39,24 +39,99 @@ static inline void displace(const Contacts *at, int i, double more, double pulle
         u[c] += n[c] * more - a[c] * pulled - b[c] * swerved;
 }
 
-/* How a contact yields about an indentation: more for a unit of force, and beyond that. */
-static inline void yield_about(double x, double before, double stiffness, double w_nn, double *give, double *beyond)
+/* The nearest of two places of the path after `low`. */
+static inline double next_cut(double low, double high, double one)
+{
+    return low < one && one < high ? one : high;
+}
+
+/* Mean of the indentation where it is positive, weighted by a triangle, on the parabola through the last three steps, and
+   its slope in the newest. */
+static double indented_on_path(double x, double now, double before, double *slope)
+{
+    static const double nodes[] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526};
+    static const double weights[] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461, 0.3478548451374538};
+    const double sloped = 0.5 * (x - before), bent = 0.5 * (x - 2.0 * now + before), least = fmin(fmin(x, now), before);
+    double first = 2.0, second = 2.0, mean = 0.0;
+    *slope = 0.0;
+    if (fmax(fmax(x, now), before) <= 0.0)
+        return 0.0;
+    if (least > 0.0 && least >= 0.25 * fabs(bent)) {
+        *slope = 1.0 / 12.0;
+        return (x + 10.0 * now + before) / 12.0;
+    }
+    const double under = sloped * sloped - 4.0 * bent * now;
+    if (bent == 0.0)
+        first = sloped != 0.0 ? -now / sloped : 2.0;
+    else if (under > 0.0) {
+        const double root = -0.5 * (sloped + copysign(sqrt(under), sloped));
+        first = root / bent;
+        second = root != 0.0 ? now / root : 2.0;
+    }
+    for (double low = -1.0, high; low < 1.0; low = high) {
+        high = next_cut(low, next_cut(low, next_cut(low, 1.0, 0.0), first), second);
+        const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
+        double piece = 0.0, steeper = 0.0;
+        for (int k = 0; k < 4; k++) {
+            const double at = middle + half * nodes[k], inside = now + at * (sloped + at * bent);
+            const double weight = half * weights[k] * (1.0 - fabs(at));
+            if (inside <= 0.0) {
+                piece = steeper = 0.0;
+                break;
+            }
+            piece += weight * inside;
+            steeper += weight * 0.5 * at * (at + 1.0);
+        }
+        mean += piece;
+        *slope += steeper;
+    }
+    return mean;
+}
+
+/* The same from the quotient of stored energies, which is stable at any step. */
+static inline double indented_by_quotient(double x, double before, double *slope)
 {
     const double inside = fmax(x, 0.0), was = fmax(before, 0.0), change = x - before;
-    double force, slope;
+    double mean = 0.0;
+    *slope = 0.0;
     if (inside > 0.0 && was > 0.0) {
-        force = 0.5 * (inside + was);
-        slope = 0.5;
-    } else if (change == 0.0) {
-        force = slope = 0.0;
-    } else {
-        force = 0.5 * (inside * inside - was * was) / change;
-        slope = (inside - force) / change;
+        mean = 0.5 * (inside + was);
+        *slope = 0.5;
+    } else if (change != 0.0) {
+        mean = 0.5 * (inside * inside - was * was) / change;
+        *slope = (inside - mean) / change;
     }
-    if (force <= 0.0)
-        force = slope = 0.0;
-    *give = 1.0 / fmax(stiffness * slope, 1e-12 / w_nn);
-    *beyond = x - *give * stiffness * force;
+    if (mean > 0.0)
+        return mean;
+    *slope = 0.0;
+    return 0.0;
+}
+
+/* Share of the quotient in the force of a contact that would reach an indentation without force. */
+static inline double share_of(double x, const double *c, double steepness)
+{
+    const double deepest = fmax(x, fmax(-c[LAST_GAP], -c[EARLIER_GAP]));
+    return deepest > 0.0 && steepness > 1.0 ? 1.0 - 1.0 / steepness : 0.0;
+}
+
+/* How a contact yields about an indentation: more for a unit of force, and beyond that. */
+static inline void yield_about(double x, const double *c, double share, double stiffness, double w_nn, double *give,
+                               double *beyond)
+{
+    double slope, steeper;
+    double mean = indented_on_path(x, -c[LAST_GAP], -c[EARLIER_GAP], &slope);
+    if (share > 0.0) {
+        mean += share * (indented_by_quotient(x, -c[EARLIER_GAP], &steeper) - mean);
+        slope += share * (steeper - slope);
+    }
+    *give = 1.0 / fmax(stiffness * slope, 1e-4 / w_nn);
+    *beyond = x - *give * stiffness * mean;
+}
+
+/* Energy per stiffness stored between two steps, from the indentations at both. */
+static inline double stored_between(double x, double now)
+{
+    return (5.0 * x * now + 0.5 * (x * x + now * now)) / 12.0;
 }
 
 /* The contact of one tangent, along a direction of friction: Coulomb's cone, and a slip that comes to its end. */
@@ -280,10 +355,10 @@ static Found solve_one(Contacts *at, int i)
     const double *w = one.w, gap = u[0] - w[0] * f[0] + w[1] * f[1] + w[2] * f[2], w_nn = w[0];
     for (int k = 0; k < 2; k++)
         one.slips[k] = u[1 + k] - w[3 + 3 * k] * f[0] + w[4 + 3 * k] * f[1] + w[5 + 3 * k] * f[2];
-    const double earlier = -c[EARLIER_GAP];
+    const double share = share_of(-gap, c, at->reach[i] * at->stiffness[i]);
     double give, beyond;
     Found found;
-    yield_about(-gap, earlier, at->stiffness[i], w_nn, &give, &beyond);
+    yield_about(-gap, c, share, at->stiffness[i], w_nn, &give, &beyond);
     for (int k = 0; k < STEPS_OF_YIELDING; k++) {
         one.gap = gap + beyond;
         one.w[0] = w_nn + give;
@@ -291,8 +366,8 @@ static Found solve_one(Contacts *at, int i)
         at->give[i] = give;
         at->beyond[i] = beyond;
         const double reached = -(gap + w_nn * found.normal - w[1] * found.first - w[2] * found.second);
-        yield_about(reached, earlier, at->stiffness[i], w_nn, &give, &beyond);
-        if (fabs(reached - beyond - give * found.normal) <= 1e-14 * (fabs(reached) + fabs(gap)))
+        yield_about(reached, c, share, at->stiffness[i], w_nn, &give, &beyond);
+        if (fabs(reached - beyond - give * found.normal) * w_nn / (w_nn + give) <= 1e-14 * (fabs(reached) + fabs(gap)))
             break;
     }
     return found;
@@ -385,8 +460,9 @@ static void change_state(Contacts *at, int i)
     at->status[i] = now;
     if (!was) {
         at->may_touch[i] = 1;
-        yield_about(-at->u[3 * i], -at->carried[PAIR * i + EARLIER_GAP], at->stiffness[i], at->w[3 * i * at->size + 3 * i],
-                    at->give + i, at->beyond + i);
+        const double *c = at->carried + PAIR * i, indented = -at->u[3 * i];
+        yield_about(indented, c, share_of(indented, c, at->reach[i] * at->stiffness[i]), at->stiffness[i],
+                    at->w[3 * i * at->size + 3 * i], at->give + i, at->beyond + i);
     }
     if (!now) {
         displace(at, i, -f[0], -f[1], -f[2]);
@@ -531,18 +607,18 @@ static inline double product(const double *restrict a, const double *restrict b,
 void march(long first_step, long steps, int modes, int pads, int pad, int pairs, int count, double tolerance, int most_sweeps,
            const double *restrict kept, const double *restrict stiffness, const double *restrict load,
            const double *restrict matrices, const double *restrict turns, const double *restrict rows, const double *restrict w,
-           const double *restrict opening, const double *restrict yields, const double *restrict mu,
-           const double *restrict belts, double *restrict q, double *restrict d, double *restrict carried,
-           double *restrict ledger, double *restrict sums, double *restrict scratch)
+           const double *restrict opening, const double *restrict yields, const double *restrict reaches,
+           const double *restrict mu, const double *restrict belts, double *restrict q, double *restrict d,
+           double *restrict carried, double *restrict ledger, double *restrict sums, double *restrict scratch)
 {
     const int size = 3 * count, coupled = pads * pad, rest = modes - coupled, each = pad * pad, facing = count / pads;
     double *restrict increment = scratch, *restrict position = increment + modes, *restrict push = position + modes;
     double *restrict both = push + modes, *restrict risen = both + modes, *restrict advanced = risen + 2 * pairs;
     double *restrict passed = advanced + 2 * pairs, *restrict turning = passed + 2 * pairs, *restrict own = turning + size;
     int status[count], wanted[count], kept_status[count], may_touch[count], broke[count], equation[count];
-    Contacts at = {.count = count, .size = size, .w = w, .opening = opening, .stiffness = yields, .mu = mu,
-                   .carried = carried, .free = own, .u = own + size, .forces = own + 2 * size, .kept_forces = own + 3 * size,
-                   .kept_u = own + 4 * size, .x = own + 5 * size, .along = own + 6 * size, .give = own + 7 * size,
+    Contacts at = {.count = count, .size = size, .w = w, .opening = opening, .stiffness = yields, .reach = reaches,
+                   .mu = mu, .carried = carried, .free = own, .u = own + size, .forces = own + 2 * size,
+                   .kept_forces = own + 3 * size, .kept_u = own + 4 * size, .x = own + 5 * size, .along = own + 6 * size, .give = own + 7 * size,
                    .beyond = own + 8 * size, .ratio = own + 9 * size, .m = own + 10 * size, .status = status,
                    .wanted = wanted, .kept_status = kept_status, .may_touch = may_touch, .broke = broke,
                    .equation = equation};
@@ -580,7 +656,7 @@ void march(long first_step, long steps, int modes, int pads, int pad, int pairs,
                 own_tangent[ANCHOR] += met;
                 at.free[3 * i + 1 + k] -= belts[2 * i + k] * (n + 1) + own_tangent[MATERIAL];
             }
-            may_touch[i] = at.free[3 * i] < 0.0 || c[EARLIER_GAP] < 0.0;
+            may_touch[i] = at.free[3 * i] < 0.0 || c[LAST_GAP] < 0.0 || c[EARLIER_GAP] < 0.0;
             touching |= may_touch[i];
         }
         memcpy(at.u, at.free, size * sizeof(double));
@@ -638,9 +714,9 @@ void march(long first_step, long steps, int modes, int pads, int pad, int pairs,
         for (int i = 0; i < count; i++) {
             double *c = carried + PAIR * i, *other = c + CARRIED;
             const double *f = at.forces + 3 * i, *u = at.u + 3 * i, *by = turning + 3 * i;
-            const double was = fmax(-c[EARLIER_GAP], 0.0), now = fmax(-u[0], 0.0);
+            const double earlier = fmax(-c[EARLIER_GAP], 0.0), last = fmax(-c[LAST_GAP], 0.0), now = fmax(-u[0], 0.0);
             const double size_of = sqrt(f[1] * f[1] + f[2] * f[2]);
-            work += 0.25 * yields[i] * (now * now - was * was);
+            work += yields[i] * (stored_between(now, last) - stored_between(last, earlier));
             driven += f[1] * (by[1] - belts[2 * i]) + f[2] * (by[2] - belts[2 * i + 1]) - f[0] * by[0];
             if (size_of > 0.0)
                 ledger[FRICTION_LOSS] += fabs(f[1] * u[1] + f[2] * u[2]);

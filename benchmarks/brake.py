@@ -34,7 +34,7 @@ from systems import SCHEME, Case
 TITLE = "a brake of two pads on a disc that turns"
 SOURCE = Path(__file__).with_name("brake.c")
 DIVISIONS = sized((3, 5, 1), (1, 2, 1))
-# Near the default step: 0.2 of the shortest period over pi.
+# 0.2 of the shortest period of the bodies over pi; the default step is shorter, as it resolves pads on their linings.
 STEP, RATIO, STEPS = 5e-6, 10, sized(200, 20)
 # Steps before those that are timed.
 BEFORE = {"sliding": 10, "squealing": sized(1000, 40)}
@@ -127,7 +127,8 @@ class Pair:
             "matrices": own, "turns": self.turns(),
             "rows": (contacts.rows.reshape(4 * count, -1) * scale)[np.ix_(three, order)],
             "w": contacts.compliance[np.ix_(three, three)].T, "opening": contacts.constants[::2, at.GAP],
-            "yields": contacts.constants[::2, at.YIELD_STIFFNESS], "mu": contacts.laws[::2, 0],
+            "yields": contacts.constants[::2, at.YIELD_STIFFNESS],
+            "reaches": contacts.constants[::2, at.YIELD_REACH], "mu": contacts.laws[::2, 0],
             "belts": motion[1, :, at.TRACK_MOTION] - motion[0, :, at.TRACK_MOTION],
             "q": q, "d": d, "carried": state.carried, "ledger": np.zeros(at.ENERGIES), "sums": np.zeros(7),
             "scratch": aligned(1, 10 * scale.size + 12 * size + size * size)[0],
