@@ -586,7 +586,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             if has_state(one.law):
                 one.state = one.state_now if on_way else state_of_new(one.law)
             landings.append(int(one.status == SEPARATED and status != SEPARATED))
-            rests = on_way and not has_state(one.law) and one.stuck_now == 1
+            rests = on_way and one.stuck_now == 1
             one.stuck = one.stuck_now if on_way else 0.0
             one.status, one.material, one.last_slip = status, material, 0.0 if rests else slip
             one.normal, one.tangential = normal, tangential

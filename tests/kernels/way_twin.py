@@ -166,7 +166,7 @@ def _with_state(laws, before, begun, drive, pull, moved, h):
         u = v * h
     ratio = past + later
     slow = abs(moved - pull * ratio) < h * law.velocity
-    return ratio, rest, state, STICKING if slow else SLIDING, float(slow)
+    return ratio, rest, state, STICKING if slow else SLIDING, 0.0
 
 
 def _root(error, law, reach):

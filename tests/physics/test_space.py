@@ -634,3 +634,18 @@ def test_bad_arguments_in_space_are_refused(name):
     with pytest.raises(st.ArgumentError, match=message) as refused:
         make()
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("evolution", ["aging", "slip"])
+def test_creep_under_rate_and_state_is_that_in_the_plane(evolution, scheme):
+    """A mass that a belt draws against a spring, slower than the law counts as sliding."""
+    law, records = st.RateAndState(0.5, 0.02, 0.01, 1e-4, 1e-3, evolution), []
+    for mass in (st.PointMass(1.0), st.RigidBody(1.0)):
+        contact = st.PointContact(mass.centre, st.RigidTrack(velocity=2e-4), friction=law)
+        spring = st.Spring(mass.centre, stiffness=2e4, direction="x")
+        system = st.System(contact, [st.Force(mass.centre, y=-10.0)], [spring])
+        records.append(st.simulate(system, 2.0, scheme=scheme, step=1e-3, sample_rate=1e3, probes=[]))
+    assert ["tangent" in run.dims for run in records] == [False, True]
+    plane, space = (np.abs(run.tangential_force.values.reshape(2000, -1)[:, 0]) for run in records)
+    np.testing.assert_allclose(space, plane, rtol=1e-7)

@@ -108,11 +108,11 @@ def keep_tangential(i, tangential, carried, sums, run, zero):
 
 
 @numba.njit(**OPTIONS)
-def keep_motion(i, moved, rests, before, carried, run, zero):
-    """Carry gap and slip of contact `i` to the next step; the slip of one that rests is rounding, carried as none."""
+def keep_motion(i, moved, stuck, before, carried, run, zero):
+    """Carry gap and slip of contact `i` to the next step; none where it sticks throughout, as it is rounding."""
     base = i * at.CARRIED
     hold(carried, base + at.EARLIER_SLIP, run, before[1])
-    hold(carried, base + at.LAST_SLIP, run, choose(rests >= 1.0, zero, moved[3]))
+    hold(carried, base + at.LAST_SLIP, run, choose(stuck >= 1.0, zero, moved[3]))
     hold(carried, base + at.EARLIER_GAP, run, held(carried, base + at.LAST_GAP, run, zero))
     hold(carried, base + at.LAST_GAP, run, moved[2])
     add(carried, base + at.MATERIAL, run, moved[3], zero)
@@ -164,7 +164,7 @@ def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, run
         held(contacts.now, i * at.IN_STEP + at.GIVE, run, zero),
         held(contacts.now, i * at.IN_STEP + at.BEYOND, run, zero),
     )
-    rests = zero
+    stuck = zero
     w, moved = (w[0] + give, w[1], w[2], w[3]), (moved[0] + beyond, moved[1], moved[2], moved[3])
     if not set_valued(law) or anywhere(touch[2] + before[0] > 0.5):
         away = strayed(carried, i, run, zero)
@@ -175,14 +175,13 @@ def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, run
             add(state.energies, at.CONTACT_WORK, run, -driven, zero)
             add(state.energies, at.DRIVE_WORK, run, driven, zero)
         past, friction_state, stuck = next_of(i, touch, moved, w, away, before, contacts, timing.step, run, runs, zero)
-        rests = stuck if law != at.COULOMB and set_valued(law) else zero
         hold(carried, i * at.CARRIED + at.STUCK_SHARE, run, stuck)
         hold(carried, i * at.CARRIED + at.PAST_RATIO, run, past)
         hold(carried, i * at.CARRIED + at.FRICTION_STATE, run, friction_state)
         lost = keep_forces(i, touch, moved, carried, contacts, closed, run, zero)
         keep_tangential(i, touch[1], carried, sums, run, zero)
         add(state.energies, at.FRICTION_LOSS, run, lost, zero)
-    keep_motion(i, moved, rests, before, carried, run, zero)
+    keep_motion(i, moved, stuck, before, carried, run, zero)
 
 
 @numba.njit(**OPTIONS)

@@ -45,7 +45,7 @@ def solve_contact(gap, slip, strayed, w, law, laws, i, before, let_go, step):
 def ratio_under(normal, slip, strayed, w, law, laws, i, before, let_go, step):
     """Return the ratio of forces over a step under a normal force, its past part, new state, status and stuck share.
 
-    See `slipping`.
+    Under a law with internal state nothing sticks, however slowly it creeps. See `slipping`.
     """
     if set_valued(law):
         ratio, past, status, stuck = ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step)
@@ -53,7 +53,7 @@ def ratio_under(normal, slip, strayed, w, law, laws, i, before, let_go, step):
     ratio, past, state = ratio_with_state(normal, slip, w, law, laws, i, before, step)
     moved = slip + (w[2] - ratio * w[3]) * normal
     slow = abs(moved) < step * sticking_speed(law, laws, i)
-    return ratio, past, state, STICKING if slow else SLIDING, 1.0 if slow else 0.0
+    return ratio, past, state, STICKING if slow else SLIDING, 0.0
 
 
 @numba.njit(**STRICT)

@@ -116,7 +116,7 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
     )
     law = contacts.codes[i]
     store_in(i, held(now, here + at.NEW_GAP, run, zero), contacts, state, run, zero)
-    rests = zero
+    stuck = zero
     if not set_valued(law) or anywhere(status + was > 0.5):
         give, beyond = held(now, here + at.GIVE, run, zero), held(now, here + at.BEYOND, run, zero)
         moved = (
@@ -144,7 +144,6 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
             past, friction_state, stuck = next_of(
                 i, touch, moved, w, away, before, contacts, timing.step, run, runs, zero
             )
-            rests = zero if law == at.COULOMB else stuck
             hold(carried, base + at.STUCK_SHARE, run, stuck)
             hold(carried, base + at.PAST_RATIO, run, c * past)
             hold(carried, base + at.CARRIED + at.PAST_RATIO, run, s * past)
@@ -157,7 +156,7 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
         hold(carried, base + at.CARRIED + at.LAST_NORMAL, run, normal)
     gap = held(now, here + at.NEW_GAP, run, zero)
     for k in range(2):
-        keep_motion(i + k, (gap, gap, gap, slips[k]), rests, (was, last[k]), carried, run, zero)
+        keep_motion(i + k, (gap, gap, gap, slips[k]), stuck, (was, last[k]), carried, run, zero)
 
 
 @numba.njit(**PASTED)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from ..analysis import regime
+from ..analysis.regimes import regime_of
 from ..arrays import Array
 from ..checks import ArgumentError
 from ..integration import Diverged
@@ -173,22 +173,19 @@ def held_against(run: xr.Dataset, finer: xr.Dataset) -> StepCheck:
     """Return a run held against the same run at half the step."""
     shared = min(run.sizes["time"], finer.sizes["time"])
     pair = run.isel(time=slice(shared)), finer.isel(time=slice(shared))
+    whole = [_measured(one) for one in pair]
     until = _parting(*(_forces(one) for one in pair))
     before: tuple[Moved, ...] = ()
     if 2 * FEWEST <= until < shared:
-        before = _results(*(one.isel(time=slice(until)) for one in pair))
+        before = _moved(*(_measured(one.isel(time=slice(until))) for one in pair))
     return StepCheck(
         step=float(run.attrs["step"]),
-        regimes=(_regime(pair[0]), _regime(pair[1])),
+        regimes=(whole[0].regime, whole[1].regime),
         parted=math.inf if until == shared else float(run["time"].values[until]),
-        moved=_results(*pair),
+        moved=_moved(*whole),
         before=before,
         finer=finer,
     )
-
-
-def _regime(run: xr.Dataset) -> str:
-    return str(regime(run)["regime"].item())
 
 
 def _forces(run: xr.Dataset) -> Array:
@@ -219,28 +216,35 @@ def _parting(forces: Array, finer: Array) -> int:
     return samples
 
 
-def _results(run: xr.Dataset, finer: xr.Dataset) -> tuple[Moved, ...]:
+class Measured(NamedTuple):
+    """Results of a run: its regime, and numbers by name."""
+
+    regime: str
+    numbers: dict[str, float]
+
+
+def _moved(run: Measured, finer: Measured) -> tuple[Moved, ...]:
     """Return the results of two runs side by side."""
-    found = [_measured(one) for one in (run, finer)]
     moved = []
     for name, (units, allowed) in NUMBERS.items():
-        value, half = found[0][name], found[1][name]
+        value, half = run.numbers[name], finer.numbers[name]
         if name == "growth" and math.isnan(value) and math.isnan(half):
             continue
         moved.append(Moved(name, units, value, half, half - value if units == "dB" else half / value - 1.0, allowed))
     for name in SHARES:
-        value, half = found[0][name], found[1][name]
+        value, half = run.numbers[name], finer.numbers[name]
         moved.append(Moved(name, "1", value, half, half - value, SHARE))
     return tuple(moved)
 
 
-def _measured(run: xr.Dataset) -> dict[str, float]:
-    """Return frequency, level and growth of the forces of a run, and shares of the states."""
-    of_regime, forces = regime(run), _forces(run)
+def _measured(run: xr.Dataset) -> Measured:
+    """Return the regime of a run, frequency, level and growth of its forces, and shares of the states."""
+    found, forces = regime_of(run), _forces(run)
     spread = _fluctuation(forces)
-    level = 20.0 * math.log10(spread) if spread > 0.0 else math.nan
-    numbers = {name: float(of_regime[name]) for name in ("frequency", *SHARES)}
-    return {**numbers, "level": level, "growth": growth_of(forces, float(run.attrs["sample_interval"]))}
+    numbers = {name: float(found[name]) for name in ("frequency", *SHARES)}
+    numbers["level"] = 20.0 * math.log10(spread) if spread > 0.0 else math.nan
+    numbers["growth"] = growth_of(forces, float(run.attrs["sample_interval"]))
+    return Measured(str(found["regime"]), numbers)
 
 
 def growth_of(forces: Array, interval: float) -> float:
