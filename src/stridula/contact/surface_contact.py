@@ -59,16 +59,16 @@ class SurfaceContact:
     tangent : sequence of float, optional
         World components of the first tangent; if left out, the direction in which the track turns or, if it does not,
         as for a `PointContact`.
-    turning : tuple, optional
-        Axis, origin and speed of a meshed track that turns under the face: direction of the axis, of any length, a
-        point on it [m], and the angular velocity about it, counter-clockwise with the axis pointing at the viewer
-        [rad/s]. Each point of the track then moves across the axis. The vibration of the track is described in a frame
-        at rest: unlike those of a turning `AxisymmetricBody`, its waves are not carried round.
     overlay : bool, optional
         Whether points are those of the intersections of the faces of both bodies, which must be flat: more points,
         which transmit a uniform pressure exactly between meshes that do not match.
     name : str, optional
         Name in records; the names of its points are this one with numbers from 1.
+    turning : tuple, optional
+        Axis, origin and speed of a meshed track that turns under the face: direction of the axis, of any length, a
+        point on it [m], and the angular velocity about it, counter-clockwise with the axis pointing at the viewer
+        [rad/s]. Each point of the track then moves across the axis. The vibration of the track is described in a frame
+        at rest: unlike those of a turning `AxisymmetricBody`, its waves are not carried round.
 
     Raises
     ------

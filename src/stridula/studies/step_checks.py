@@ -116,6 +116,8 @@ class StepCheck:
             lines.append(f"regime {self.regimes[0]}, {self.regimes[1]} at half the step")
         if math.isinf(self.parted):
             lines.append("forces agree throughout")
+        elif self.parted == float(self.finer["time"].values[0]):
+            lines.append(f"forces part within the first {1.0 / WINDOWS:.0%} of the time")
         else:
             lines.append(f"forces agree until {self.parted:.4g} s")
         if self.before:
