@@ -125,6 +125,11 @@ def _slide(way, u, begin, drive, sense):
         if max(abs(ends[0]), abs(ends[2])) <= held * pull:
             more, less = _moments(begin, 1.0, *ends / pull)
             return later + more, past + less, 1.0 - begin
+        if abs(ends[0]) <= held * pull:
+            breaks = begin + (1 - begin) * (np.sign(ends[2]) * held * pull - ends[0]) / (ends[2] - ends[0])
+            at_break = np.sign(ends[2]) * held
+            more, less = _moments(begin, breaks, ends[0] / pull, 0.5 * (ends[0] / pull + at_break), at_break)
+            later, past, begin, ends = later + more, past + less, breaks, ends[[2, 1, 2]]
         u, sense = 0.0, 1.0 if ends[0] > 0 else -1.0
     return later, past, 0.0
 

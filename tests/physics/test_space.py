@@ -137,7 +137,9 @@ def test_a_planar_system_moves_equally_under_any_rotation(law, rotation):
     size = float(flat.normal_force.max())
     np.testing.assert_allclose(space.normal_force, flat.normal_force, atol=1e-8 * size)
     np.testing.assert_allclose(space.tangential_force[..., 0], flat.tangential_force, atol=1e-7 * size)
-    np.testing.assert_allclose(space.tangential_force[..., 1], 0.0, atol=1e-8 * size)
+    # Creep that reverses passes velocities of the size of rounding across: 1e-17 m/s there tilts a friction force.
+    across = 1e-8 if law.set_valued or law.law == "lugre" else 2e-4
+    np.testing.assert_allclose(space.tangential_force[..., 1], 0.0, atol=across * size)
     np.testing.assert_allclose(space.status_share, flat.status_share, atol=1e-6)
     assert int(flat.landings.sum()) >= 3
     for term in ("kinetic_and_elastic", "friction_loss", "drive_work", "contact_work"):

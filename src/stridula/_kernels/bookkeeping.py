@@ -52,12 +52,16 @@ def share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, 
     add(sums, tally + at.JAMS, run, jammed, zero)
     add(sums, tally + at.STUCK_STEPS, run, choose(sticks, 1.0, zero), zero)
     add(sums, tally + at.SLID_STEPS, run, choose(sticks, zero, choose(apart, zero, 1.0)), zero)
-    anchor = held(carried, base + at.ANCHOR, run, zero)
-    # On its way through the step a contact may stop after a slip.
-    stopped = zero if law == at.COULOMB else moved[3]
-    place = held(carried, base + at.MATERIAL, run, zero) + stopped
-    hold(carried, base + at.ANCHOR, run, anchor_after(anchor, place, status, was))
     return choose(apart, zero, closed)
+
+
+@numba.njit(**OPTIONS)
+def keep_anchor(i, slip, law, status, was, carried, run, zero):
+    """Carry the anchor of a stick of contact `i`; on its way through the step a contact may stop after a slip."""
+    base = i * at.CARRIED
+    place = held(carried, base + at.MATERIAL, run, zero) + (zero if law == at.COULOMB else slip)
+    anchor = held(carried, base + at.ANCHOR, run, zero)
+    hold(carried, base + at.ANCHOR, run, anchor_after(anchor, place, status, was))
 
 
 @numba.njit(**OPTIONS)
@@ -170,6 +174,7 @@ def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, run
         away = strayed(carried, i, run, zero)
         at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero)
         closed = share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, run, zero)
+        keep_anchor(i, moved[3], law, touch[2], before[0], carried, run, zero)
         if imposed.motion.shape[0] > 1:
             driven = driven_work(i, touch, imposed.motion, n, run, runs, zero)
             add(state.energies, at.CONTACT_WORK, run, -driven, zero)

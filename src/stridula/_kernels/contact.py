@@ -9,8 +9,9 @@ from .friction import STRICT, set_valued, sliding_ratio, sticking_speed
 from .lanes import choose, magnitude
 from .slipping import SEPARATED, SLIDING, STICKING, ratio_over_step, ratio_with_state
 
-# Most evaluations of the ratio for the normal force, and the relative change of that force that is round-off.
-TRIALS, ROUND_OFF = 60, 1e-15
+# Most evaluations of the ratio for the normal force, those before it is sought by bisection, and the relative change of
+# that force that is round-off.
+TRIALS, PATIENCE, ROUND_OFF = 80, 25, 1e-15
 
 
 @numba.njit(inline="always", **STRICT)
@@ -72,6 +73,7 @@ def slide_on_its_way(gap, slip, strayed, w, law, laws, i, before, let_go, step):
     free = w_nn - ratio * w_nt
     normal = -gap / (free if free > 0.0 else w_nn)
     status, last, error_before = SLIDING, 0.0, 0.0
+    low, high, below, above, settled = 0.0, math.inf, ratio, ratio, False
     for trial in range(TRIALS):
         ratio, _, _, status, _ = ratio_under(normal, slip, strayed, w, law, laws, i, before, let_go, step)
         free = w_nn - ratio * w_nt
@@ -80,17 +82,28 @@ def slide_on_its_way(gap, slip, strayed, w, law, laws, i, before, let_go, step):
             return pressed, needed, STICKING, True
         found = -gap / free
         error = found - normal
-        if abs(error) <= ROUND_OFF * found or w_nt == 0.0:
+        settled = abs(error) <= ROUND_OFF * found or w_nt == 0.0
+        if settled:
             normal = found
             break
+        if error > 0.0:
+            low, below = normal, ratio
+        else:
+            high, above = normal, ratio
         new = found
         if trial > 0 and error != error_before:
             secant = normal - error * (normal - last) / (error - error_before)
             if 0.5 * found < secant < 2.0 * found:
                 new = secant
+        if trial > PATIENCE and low > 0.0 and high < math.inf:
+            new = 0.5 * (low + high)
         last, error_before, normal = normal, error, new
         if normal == last:
             break
+    if not settled and low > 0.0 and high < math.inf and above != below:
+        # The ratio jumps at this normal force, where the contact stops or slides on: between both it closes the gap.
+        share = min(max((w_nn + gap / normal - below * w_nt) / (w_nt * (above - below)), 0.0), 1.0)
+        ratio = below + share * (above - below)
     return normal, ratio * normal, status, False
 
 

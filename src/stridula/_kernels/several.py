@@ -8,12 +8,12 @@ from .bookkeeping import (
     add,
     credit,
     driven_work,
+    keep_anchor,
     keep_books,
     keep_forces,
     keep_motion,
     keep_place,
     keep_tangential,
-    next_of,
     share_states,
     store_in,
 )
@@ -31,10 +31,10 @@ from .space import (
     direction,
     free_in_space,
     is_second,
-    keep_bristles,
-    keep_second_anchor,
+    next_in_space,
     on,
     pair_of,
+    softened,
     whole_compliance,
 )
 from .trying import complete_many, place_after, soften, try_many
@@ -126,28 +126,36 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
             on(slips, c, s),
         )
         touch = (normal, on(forces, c, s), status, held(now, here + at.JAMMED_NOW, run, zero))
-        w = along(whole_compliance(contacts.faces, i, run, zero), c, s)
-        w = (w[0] + give, w[1], w[2], w[3])
-        away = on((strayed(carried, i, run, zero), strayed(carried, i + 1, run, zero)), c, s)
+        whole = whole_compliance(contacts.faces, i, run, zero)
+        w = along(softened(whole, give), c, s)
+        strays = strayed(carried, i, run, zero), strayed(carried, i + 1, run, zero)
         at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero)
-        keep_second_anchor(i, zero if law == at.COULOMB else slips[1], status, was, carried, run, zero)
+        away = on(strays, c, s)
         closed = share_states(i, touch, moved, before, carried, contacts.sums, w, away, law, at_rest, run, zero)
+        for k in range(2):
+            keep_anchor(i + k, slips[k], law, status, was, carried, run, zero)
         if imposed.motion.shape[0] > 1:
             pushes = (normal, forces[0]), (zero, forces[1])
             driven = driven_work(i, pushes[0], imposed.motion, n, run, runs, zero)
             driven += driven_work(i + 1, pushes[1], imposed.motion, n, run, runs, zero)
             add(state.energies, at.CONTACT_WORK, run, -driven, zero)
             add(state.energies, at.DRIVE_WORK, run, driven, zero)
-        if law == at.LUGRE:
-            keep_bristles(i, slips, (was, last, earlier, states), status, carried, contacts, timing.step, run, runs)
-        else:
-            past, friction_state, stuck = next_of(
-                i, touch, moved, w, away, before, contacts, timing.step, run, runs, zero
-            )
-            hold(carried, base + at.STUCK_SHARE, run, stuck)
-            hold(carried, base + at.PAST_RATIO, run, c * past)
-            hold(carried, base + at.CARRIED + at.PAST_RATIO, run, s * past)
-            hold(carried, base + at.FRICTION_STATE, run, friction_state)
+        past, states, stuck = next_in_space(
+            (normal, status),
+            free,
+            strays,
+            softened(whole, give),
+            law,
+            contacts.laws,
+            i * runs + run,
+            (was, last, earlier, states, last_normal, last_forces, forces, pasts),
+            held(now, here + at.LET_GO, run, zero),
+            timing.step,
+        )
+        hold(carried, base + at.STUCK_SHARE, run, stuck)
+        for k in range(2):
+            hold(carried, base + k * at.CARRIED + at.PAST_RATIO, run, past[k])
+            hold(carried, base + k * at.CARRIED + at.FRICTION_STATE, run, states[k])
         lost = keep_forces(i, touch, moved, carried, contacts, closed, run, zero)
         add(state.energies, at.FRICTION_LOSS, run, lost, zero)
         for k in range(2):

@@ -114,6 +114,12 @@ def slide_through(slip, begin, drive, pull, sense, law, laws, i, step):
         if max(abs(first), abs(last)) <= held * pull and pull > 0.0:
             more, less = moments(begin, 1.0, first / pull, 0.5 * (first + last) / pull, last / pull)
             return later + more, past + less, 1.0 - begin
+        if abs(first) <= held * pull:
+            # It is held until its drive has grown.
+            end = begin + (1.0 - begin) * (math.copysign(held * pull, last) - first) / (last - first)
+            at_end = math.copysign(held, last)
+            more, less = moments(begin, end, first / pull, 0.5 * (first / pull + at_end), at_end)
+            later, past, begin, first = later + more, past + less, end, last
         slip, sense = 0.0, 1.0 if first > 0.0 else -1.0
     return later, past, 0.0
 

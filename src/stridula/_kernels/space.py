@@ -2,7 +2,8 @@
 
 The march has two pairs of rows for each: the normal with the first tangent, then no normal with the second tangent.
 Friction acts along one direction u of the tangent plane. Along u the contact is like one of the plane; u is the
-direction without velocity across it. LuGre's bristles are not along the slip: see `bristles`.
+direction without velocity across it. Under laws whose friction changes within a step the slip goes its way as a vector:
+see `contact_in_space`.
 """
 
 import math
@@ -12,12 +13,12 @@ from numba.extending import overload
 
 from . import layout as at
 from .block_rows import COMPLIANCE, DISPLACEMENT
-from .bristles import next_bristles, slide_on_bristles
-from .contact import SLIDING, STICKING, velocity_at
-from .friction import STRICT, set_valued, sliding_ratio
+from .contact import SLIDING
+from .contact_in_space import next_on_way_of_run, slide_on_its_way
+from .friction import STRICT
 from .lanes import choose, component, held, hold, lane, spread, with_lane
 from .modes import OPTIONS, PASTED
-from .solves import anchor_after, carried_by, solve_one_run, strayed
+from .solves import carried_by, solve_one_run, strayed
 from .vectors import LANES, VECTOR
 
 # Largest number of trials of a direction of friction; velocity across it that counts as round-off, relative to its
@@ -54,6 +55,12 @@ def whole_compliance(faces, i, run, zero):
         component(faces, b, COMPLIANCE + t, run, zero),
         component(faces, b, COMPLIANCE + b, run, zero),
     )
+
+
+@numba.njit(**OPTIONS)
+def softened(w, give):
+    """Return a compliance in space with an additional one of the normal."""
+    return (w[0] + give, w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8])
 
 
 @numba.njit(**OPTIONS)
@@ -118,7 +125,7 @@ def sliding_direction(gap, slips, w, mu, carried_on, guess):
 
 
 @numba.njit(**STRICT)
-def solve_along(c, s, free, law, laws, number, before, let_go, step):
+def solve_along(c, s, free, laws, number, before, let_go, step):
     """Solve a contact in space as one of the plane along a direction; `free` are gap, slips, strays and compliance."""
     gap, slips, strays, w = free
     was, last, earlier, state, last_normal, last_forces, _, pasts = before
@@ -129,7 +136,7 @@ def solve_along(c, s, free, law, laws, number, before, let_go, step):
         c * slips[0] + s * slips[1],
         c * strays[0] + s * strays[1],
         along(w, c, s),
-        law,
+        at.COULOMB,
         laws,
         number,
         (
@@ -169,21 +176,20 @@ def slip_under(c, s, normal, tangential, slips, w):
 
 
 @numba.njit(**STRICT)
-def turns_on_its_line(free, law, laws, number, size, came):
+def turns_on_its_line(free, mu, size, came):
     """Return whether friction along the last slip reverses it with only rounding across.
 
     The velocity then passes zero, near which no direction has velocity across it.
     """
     gap, slips, _, w = free
-    if size == 0.0 or not set_valued(law):
+    if size == 0.0:
         return False
     c, s = came
-    ratio = sliding_ratio(law, laws, number, 0.0)
-    clear = w[0] - ratio * (c * w[1] + s * w[2])
+    clear = w[0] - mu * (c * w[1] + s * w[2])
     if clear <= 0.0:
         return False
     normal = -gap / clear
-    slip, swerve = slip_under(c, s, normal, ratio * normal, slips, w)
+    slip, swerve = slip_under(c, s, normal, mu * normal, slips, w)
     farther, across = c * slip + s * swerve, c * swerve - s * slip
     return farther < 0.0 and abs(across) <= STRAIGHT * (size - farther)
 
@@ -198,13 +204,13 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
     """
     if gap >= 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0
-    if law == at.LUGRE:
-        return slide_on_bristles(gap, slips, w, laws, number, before, step)
+    if law != at.COULOMB:
+        return slide_on_its_way(gap, slips, strays, w, law, laws, number, before, let_go > 0.5, step)
     first, second, held = sticking_direction(gap, slips[0] + strays[0], slips[1] + strays[1], w)
-    may_hold = law != at.COULOMB or held <= laws[number, 0] or laws[number, 0] == 0.0
-    was, last, guess = before[0], before[1], before[6]
+    mu, was, last, guess = laws[number, 0], before[0], before[1], before[6]
+    may_hold = held <= mu or mu == 0.0
     if not may_hold:
-        mu, strength = laws[number, 0], math.hypot(guess[0], guess[1])
+        strength = math.hypot(guess[0], guess[1])
         near = (guess[0] / strength, guess[1] / strength) if strength > 0.0 else (first, second)
         carried_on = carried_on_by(before, let_go, first, second)
         c, s, found = sliding_direction(gap, slips, w, mu, carried_on, near)
@@ -220,24 +226,24 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
     size = math.hypot(last[0], last[1])
     came = (last[0] / size, last[1] / size) if size > 0.0 else (1.0, 0.0)
     slid = was > SLIDING - 0.5 and let_go == 0.0
-    if slid and turns_on_its_line(free, law, laws, number, size, came):
+    if slid and turns_on_its_line(free, mu, size, came):
         c, s = came
-        normal, tangential, status, jammed = solve_along(c, s, free, law, laws, number, before, let_go, step)
+        normal, tangential, status, jammed = solve_along(c, s, free, laws, number, before, let_go, step)
         return normal, tangential * c, tangential * s, status, jammed
     c, s, normal, tangential, status, jammed = searched(
-        first, second, may_hold, free, law, laws, number, before, let_go, step
+        first, second, may_hold, free, laws, number, before, let_go, step
     )
     if slid and abs(status - SLIDING) < 0.5:
         slip, swerve = slip_under(c, s, normal, tangential, slips, w)
         if size > 0.0 and tangential * (c * slip + s * swerve) < 0.0:
             # It comes to rest or reverses within the step (5d): along the line of its last slip.
             c, s = came
-            normal, tangential, status, jammed = solve_along(c, s, free, law, laws, number, before, let_go, step)
+            normal, tangential, status, jammed = solve_along(c, s, free, laws, number, before, let_go, step)
     return normal, tangential * c, tangential * s, status, jammed
 
 
 @numba.njit(**STRICT)
-def searched(first, second, may_hold, free, law, laws, number, before, let_go, step):
+def searched(first, second, may_hold, free, laws, number, before, let_go, step):
     """Return the direction of friction, by the secant method within a bracket, and the contact along it.
 
     A contact that may be held, and is held along the first direction, sticks.
@@ -246,17 +252,13 @@ def searched(first, second, may_hold, free, law, laws, number, before, let_go, s
     turn, low, high = 0.0, -math.inf, math.inf
     turn_before, across_before = math.nan, math.nan
     c, s, normal, tangential, status, jammed = first, second, 0.0, 0.0, 0.0, 0.0
-    # A contact not held along the force that would hold it is not held along any direction.
-    freed = let_go
     for trial in range(TRIALS):
         cosine, sine = math.cos(turn), math.sin(turn)
         c, s = first * cosine - second * sine, second * cosine + first * sine
-        normal, tangential, status, jammed = solve_along(c, s, free, law, laws, number, before, freed, step)
-        if may_hold and abs(before[0] - STICKING) < 0.5:
-            freed = 1.0
+        normal, tangential, status, jammed = solve_along(c, s, free, laws, number, before, let_go, step)
         if trial == 0 and may_hold and abs(status - SLIDING) > 0.5:
             break
-        # The direction is that of the velocity in laws that depend on speed, see `contact.velocity_at`.
+        # The direction is that of the velocity, see `contact.velocity_at`.
         slip, swerve = slip_under(c, s, normal, tangential, slips, w)
         moved, swerved = 9.0 * slip + carried_on[0], 9.0 * swerve + carried_on[1]
         across = c * swerved - s * moved
@@ -297,6 +299,37 @@ def lane_of_pair(pair, i):
 
 
 @numba.njit(**STRICT)
+def lanes_of_compliance(w, i):
+    """Return the numbers in a lane of a compliance."""
+    return (
+        lane(w[0], i),
+        lane(w[1], i),
+        lane(w[2], i),
+        lane(w[3], i),
+        lane(w[4], i),
+        lane(w[5], i),
+        lane(w[6], i),
+        lane(w[7], i),
+        lane(w[8], i),
+    )
+
+
+@numba.njit(**STRICT)
+def lanes_of_past(before, i):
+    """Return the numbers in a lane of the past of a contact."""
+    return (
+        lane(before[0], i),
+        lane_of_pair(before[1], i),
+        lane_of_pair(before[2], i),
+        lane_of_pair(before[3], i),
+        lane(before[4], i),
+        lane_of_pair(before[5], i),
+        lane_of_pair(before[6], i),
+        lane_of_pair(before[7], i),
+    )
+
+
+@numba.njit(**STRICT)
 def solve_runs_in_space(gap, slips, strays, w, law, laws, run, before, let_go, step):
     """Do `solve_one_in_space` for vectors of runs."""
     normal, first, second, new, jammed = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
@@ -305,30 +338,11 @@ def solve_runs_in_space(gap, slips, strays, w, law, laws, run, before, let_go, s
             lane(gap, i),
             lane_of_pair(slips, i),
             lane_of_pair(strays, i),
-            (
-                lane(w[0], i),
-                lane(w[1], i),
-                lane(w[2], i),
-                lane(w[3], i),
-                lane(w[4], i),
-                lane(w[5], i),
-                lane(w[6], i),
-                lane(w[7], i),
-                lane(w[8], i),
-            ),
+            lanes_of_compliance(w, i),
             law,
             laws,
             run + i,
-            (
-                lane(before[0], i),
-                lane_of_pair(before[1], i),
-                lane_of_pair(before[2], i),
-                lane_of_pair(before[3], i),
-                lane(before[4], i),
-                lane_of_pair(before[5], i),
-                lane_of_pair(before[6], i),
-                lane_of_pair(before[7], i),
-            ),
+            lanes_of_past(before, i),
             lane(let_go, i),
             step,
         )
@@ -453,22 +467,39 @@ def free_in_space(contacts, sizes, run, zero):
             hold(now, here + at.IN_STEP + at.FREE_SLIP, run, swerve)
 
 
-@numba.njit(**OPTIONS)
-def keep_second_anchor(i, stopped, status, was, carried, run, zero):
-    """Carry the anchor of a stick of contact `i` along its second tangent."""
-    base = (i + 1) * at.CARRIED
-    anchor, material = held(carried, base + at.ANCHOR, run, zero), held(carried, base + at.MATERIAL, run, zero)
-    hold(carried, base + at.ANCHOR, run, anchor_after(anchor, material + stopped, status, was))
+def next_in_space(touch, slips, strays, w, law, laws, run, before, let_go, step):
+    """Return past parts of the ratios, internal states and share of stick: `contact_in_space.next_on_way_of_run`."""
+    return next_on_way_of_run(touch, slips, strays, w, law, laws, run, before, let_go, step)
 
 
-@numba.njit(**OPTIONS)
-def keep_bristles(i, slips, before, status, carried, contacts, step, run, runs):
-    """Carry the bristles of contact `i` to the next step; `before` are its status, last two slips and bristles."""
-    was, last, earlier, states = before
-    velocity = (
-        velocity_at(slips[0], (was, last[0], earlier[0]), step),
-        velocity_at(slips[1], (was, last[1], earlier[1]), step),
-    )
-    first, second = next_bristles(contacts.laws, i * runs + run, status, states, velocity, step)
-    hold(carried, i * at.CARRIED + at.FRICTION_STATE, run, first)
-    hold(carried, (i + 1) * at.CARRIED + at.FRICTION_STATE, run, second)
+@numba.njit(**STRICT)
+def next_of_runs_in_space(touch, slips, strays, w, law, laws, run, before, let_go, step):
+    """Do `next_in_space` for vectors of runs."""
+    past, other_past, state, other_state, stuck = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    for i in range(LANES):
+        one = next_on_way_of_run(
+            lane_of_pair(touch, i),
+            lane_of_pair(slips, i),
+            lane_of_pair(strays, i),
+            lanes_of_compliance(w, i),
+            law,
+            laws,
+            run + i,
+            lanes_of_past(before, i),
+            lane(let_go, i),
+            step,
+        )
+        past, other_past = with_lane(past, i, one[0][0]), with_lane(other_past, i, one[0][1])
+        state, other_state = with_lane(state, i, one[1][0]), with_lane(other_state, i, one[1][1])
+        stuck = with_lane(stuck, i, one[2])
+    return (past, other_past), (state, other_state), stuck
+
+
+@overload(next_in_space)
+def _overload_next_in_space(touch, slips, strays, w, law, laws, run, before, let_go, step):
+    chosen = next_of_runs_in_space if slips[0] is VECTOR else next_on_way_of_run
+
+    def implementation(touch, slips, strays, w, law, laws, run, before, let_go, step):
+        return chosen(touch, slips, strays, w, law, laws, run, before, let_go, step)
+
+    return implementation

@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from .._kernels import layout as at
-from .._kernels.bristles import bristles_ratio, next_bristles_of_run
 from .._kernels.contact import SEPARATED, SLIDING, STICKING
 from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
 from .._kernels.pressing import stored_in_one
+from .._kernels.slipping_in_space import ratio_of_state, state_after
 from ..arrays import Array
 from ..checks import ArgumentError
 from ..lowering import Assembly, ContactRows
@@ -143,8 +143,10 @@ class _Start:
             share = speed / whole if whole else 0.0
             if self.arrays.contacts[number].contact.has_state_vector:
                 pair = slice(number, number + 2)
-                states, speeds = tuple(carried[pair, at.FRICTION_STATE]), tuple(self.speeds[pair])
-                ratios[i] = bristles_ratio(laws, number, states, speeds, self.step)[i - number]
+                states, velocity = tuple(carried[pair, at.FRICTION_STATE]), tuple(self.speeds[pair])
+                after = state_after(law, laws, number, states, velocity, self.step)
+                middle = tuple(0.5 * (np.array(states) + np.array(after)))
+                ratios[i] = ratio_of_state(law, laws, number, middle, velocity)[i - number]
             elif not set_valued(law):
                 # Signed by the sense of slip, as bristles may be bent either way.
                 sense = -1.0 if share == -1.0 else 1.0
@@ -164,9 +166,7 @@ class _Start:
             carried[i, at.MATERIAL] = one.at + self.rows[i, 1] @ self.arrays.position
             carried[i, at.ABSCISSA] = one.at + self.travels[i] @ self.arrays.position
             carried[i, at.STATUS] = STICKING if self.is_closed[i] and self.slip_speeds[i] == 0.0 else SEPARATED
-            if one.contact.has_state_vector:
-                carried[i, at.FRICTION_STATE] = self._bristles_before(int(self.first[i]))[i - self.first[i]]
-            elif not one.is_second:
+            if one.contact.has_state_vector or not one.is_second:
                 carried[i, at.FRICTION_STATE] = self.arrays.friction_state[i]
         carried[:, at.ANCHOR], carried[:, at.LAST_GAP] = carried[:, at.MATERIAL], self.gaps
         carried[:, at.EARLIER_GAP] = self.gaps - self.rows[self.first, 0] @ first - self.before[self.first, 2]
@@ -177,15 +177,6 @@ class _Start:
         # One step earlier, with the same acceleration.
         carried[:, at.EARLIER_SLIP] = 3.0 * carried[:, at.LAST_SLIP] - 2.0 * self.step * self.speeds
         return carried
-
-    def _bristles_before(self, number: int) -> Array:
-        """Return the bristles of a contact in space half a step before the start, as the march has them.
-
-        They are the mirror image of the half step after the start: unlike backward integration, it does not grow.
-        """
-        states, speeds = (tuple(values[number : number + 2]) for values in (self.arrays.friction_state, self.speeds))
-        after = next_bristles_of_run(self.contacts.laws, number, float(SLIDING), states, speeds, self.step / 2.0)
-        return np.asarray(2.0 * np.array(states) - np.array(after))
 
     def pushes(self, closed: Array) -> Array:
         """Return the rows of closed contacts, normal and tangent alternately."""

@@ -1,0 +1,142 @@
+"""Step 5 for one contact in space under a law other than Coulomb's: the slip goes its way as a vector."""
+
+import math
+
+import numba
+
+from . import layout as at
+from .contact import PATIENCE, ROUND_OFF, SLIDING, STICKING, TRIALS, velocity_at
+from .friction import STRICT, set_valued, sliding_ratio, sticking_speed
+from .slipping_in_space import BEYOND, plus, ratio_over_step, ratio_with_state, size_of, undone_by
+
+
+@numba.njit(**STRICT)
+def sticking_forces(gap, slips, w):
+    """Return the forces that close `gap` and undo both slips (5b), beyond all bounds if no force moves a tangent."""
+    tangents = (
+        w[4] - w[3] * w[1] / w[0],
+        w[5] - w[3] * w[2] / w[0],
+        w[7] - w[6] * w[1] / w[0],
+        w[8] - w[6] * w[2] / w[0],
+    )
+    first, second = undone_by(tangents, (slips[0] - w[3] * gap / w[0], slips[1] - w[6] * gap / w[0]))
+    if max(abs(first), abs(second)) >= 0.5 * BEYOND:
+        return -gap / w[0], first, second
+    return (w[1] * first + w[2] * second - gap) / w[0], first, second
+
+
+@numba.njit(**STRICT)
+def is_prescribed(law, w):
+    """Return whether no force moves a contact under a set-valued law along its tangents: its slip is given."""
+    return set_valued(law) and w[4] == 0.0 and w[8] == 0.0
+
+
+@numba.njit(**STRICT)
+def ratio_under(normal, slips, strays, w, law, laws, number, before, let_go, step):
+    """Return ratios over a step under a normal force, past parts, new states, status and share of stick.
+
+    As `contact.ratio_under`.
+    """
+    if set_valued(law):
+        ratio, past, status, stuck = ratio_over_step(normal, slips, strays, w, law, laws, number, before, let_go, step)
+        return ratio, past, before[3], status, stuck
+    ratio, past, states = ratio_with_state(normal, slips, w, law, laws, number, before, step)
+    moved = (
+        slips[0] + (w[3] - w[4] * ratio[0] - w[5] * ratio[1]) * normal,
+        slips[1] + (w[6] - w[7] * ratio[0] - w[8] * ratio[1]) * normal,
+    )
+    slow = size_of(moved) < step * sticking_speed(law, laws, number)
+    return ratio, past, states, STICKING if slow else SLIDING, 0.0
+
+
+@numba.njit(**STRICT)
+def slide_as_prescribed(gap, slips, strays, w, law, laws, number, before, step):
+    """Return the contact of bodies that no force moves along the tangents: as `contact.slide_as_prescribed`."""
+    was, last, earlier = before[0], before[1], before[2]
+    normal, size = -gap / w[0], size_of(slips)
+    if size == 0.0 or size_of(plus(slips, 1.0, strays)) == 0.0:
+        return normal, 0.0, 0.0, float(STICKING), 0.0
+    way = slips[0] / size, slips[1] / size
+    back = last[0] * way[0] + last[1] * way[1]
+    velocity = (
+        velocity_at(slips[0], (was, last[0], earlier[0]), step),
+        velocity_at(slips[1], (was, last[1], earlier[1]), step),
+    )
+    speed = size_of(velocity)
+    if was == SLIDING and back < 0.0:
+        # Sliding on until it stops, then back (5d).
+        turned = sliding_ratio(law, laws, number, abs(velocity[0] * way[0] + velocity[1] * way[1]))
+        pulled = turned * (size + back) / (size - back) * normal
+    else:
+        pulled = sliding_ratio(law, laws, number, speed) * normal
+        if was == SLIDING and speed > 0.0:
+            way = velocity[0] / speed, velocity[1] / speed
+    return normal, pulled * way[0], pulled * way[1], float(SLIDING), 0.0
+
+
+@numba.njit(**STRICT)
+def slide_on_its_way(gap, slips, strays, w, law, laws, number, before, let_go, step):
+    """Return normal force, both tangential forces, status and whether it jams: as `contact.slide_on_its_way`."""
+    if is_prescribed(law, w):
+        return slide_as_prescribed(gap, slips, strays, w, law, laws, number, before, step)
+    if set_valued(law) and before[0] != SLIDING:
+        pressed, first, second = sticking_forces(gap, plus(slips, 1.0, strays), w)
+        if pressed > 0.0:
+            tried = ratio_under(pressed, slips, strays, w, law, laws, number, before, let_go, step)
+            if tried[3] == STICKING:
+                most, pulled = laws[number, 0], math.hypot(first, second)
+                lifted = most * (first * w[1] + second * w[2]) / pulled if pulled > 0.0 else 0.0
+                return pressed, first, second, float(STICKING), 1.0 if w[0] <= lifted else 0.0
+    share = 1.0 / before[4] if before[4] > 0.0 else 0.0
+    ratio = share * before[5][0], share * before[5][1]
+    free = w[0] - ratio[0] * w[1] - ratio[1] * w[2]
+    normal = -gap / (free if free > 0.0 else w[0])
+    status, last, error_before = SLIDING, 0.0, 0.0
+    low, high, below, above, settled = 0.0, math.inf, ratio, ratio, False
+    for trial in range(TRIALS):
+        ratio, _, _, status, _ = ratio_under(normal, slips, strays, w, law, laws, number, before, let_go, step)
+        free = w[0] - ratio[0] * w[1] - ratio[1] * w[2]
+        if free <= 0.0:
+            pressed, first, second = sticking_forces(gap, plus(slips, 1.0, strays), w)
+            return pressed, first, second, float(STICKING), 1.0
+        found = -gap / free
+        error = found - normal
+        settled = abs(error) <= ROUND_OFF * found or (w[1] == 0.0 and w[2] == 0.0)
+        if settled:
+            normal = found
+            break
+        if error > 0.0:
+            low, below = normal, ratio
+        else:
+            high, above = normal, ratio
+        new = found
+        if trial > 0 and error != error_before:
+            secant = normal - error * (normal - last) / (error - error_before)
+            if 0.5 * found < secant < 2.0 * found:
+                new = secant
+        if trial > PATIENCE and low > 0.0 and high < math.inf:
+            new = 0.5 * (low + high)
+        last, error_before, normal = normal, error, new
+        if normal == last:
+            break
+    if not settled and low > 0.0 and high < math.inf:
+        # The ratio jumps at this normal force, where the contact stops or slides on: between both it closes the gap.
+        lifted, more = below[0] * w[1] + below[1] * w[2], above[0] * w[1] + above[1] * w[2]
+        share = min(max((w[0] + gap / normal - lifted) / (more - lifted), 0.0), 1.0) if more != lifted else 0.0
+        ratio = plus(below, share, plus(above, -1.0, below))
+    return normal, ratio[0] * normal, ratio[1] * normal, float(status), 0.0
+
+
+@numba.njit(**STRICT)
+def next_on_way_of_run(touch, slips, strays, w, law, laws, number, before, let_go, step):
+    """Return past parts of the ratios for the next step, internal states and the share of stick of this step.
+
+    `touch` are normal force and status. Where bodies are apart, states are those of new contacts.
+    """
+    if touch[1] < 0.5:
+        fresh = laws[number, at.LAW_PARAMETERS - 1]
+        return (0.0, 0.0), (fresh, fresh if law == at.LUGRE else 0.0), 0.0
+    if law == at.COULOMB or is_prescribed(law, w):
+        return (0.0, 0.0), before[3], 1.0 if touch[1] == STICKING else 0.0
+    _, past, states, _, stuck = ratio_under(touch[0], slips, strays, w, law, laws, number, before, let_go > 0.5, step)
+    return past, states, stuck

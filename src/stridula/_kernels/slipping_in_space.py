@@ -1,0 +1,486 @@
+"""The slip velocity on its way through a step for contacts in space, as a vector of the tangent plane.
+
+As in `slipping`, of which this is the vector form: ``u' = drive - P r`` with the matrix P of the tangents in place of
+``pull``, and a ratio r along the slip. Motion along a line is the same to rounding.
+"""
+
+import math
+
+import numba
+
+from . import layout as at
+from .friction import (
+    STRICT,
+    bristle_limit,
+    bristles_over,
+    holding_ratio,
+    next_state,
+    ratio_after,
+    sliding_ratio,
+    speed_scale,
+    state_ratio,
+)
+from .slipping import (
+    GROWTH_AT_STAGE,
+    MOST_PARTS,
+    SEPARATED,
+    SLIDING,
+    STAGE,
+    STICKING,
+    STOPPED,
+    moments,
+    part_of,
+    parts_with_state,
+)
+from .slipping import slide_through as slide_on_line
+
+# Relative determinant of the matrix of the tangents below which it moves along one direction only.
+SINGULAR = 1e-12
+# Motion across a line that counts as rounding.
+ROUNDING = 1e-9
+# Most parts of a step in which the slip turns or stops.
+MOST_TURNS = 16
+# Trials of a search for a speed, and its relative accuracy.
+TRIALS, SETTLED = 200, 1e-15
+# A ratio that nothing holds.
+BEYOND = 1e300
+
+
+@numba.njit(inline="always", **STRICT)
+def plus(first, share, second):
+    """Return ``first + share second`` for vectors."""
+    return first[0] + share * second[0], first[1] + share * second[1]
+
+
+@numba.njit(inline="always", **STRICT)
+def times(matrix, vector):
+    """Return the product of a matrix, rows in turn, and a vector."""
+    return matrix[0] * vector[0] + matrix[1] * vector[1], matrix[2] * vector[0] + matrix[3] * vector[1]
+
+
+@numba.njit(inline="always", **STRICT)
+def along(vector, way):
+    """Return the component of a vector along a direction."""
+    return vector[0] * way[0] + vector[1] * way[1]
+
+
+@numba.njit(inline="always", **STRICT)
+def size_of(vector):
+    """Return the length of a vector."""
+    return math.hypot(vector[0], vector[1])
+
+
+@numba.njit(inline="always", **STRICT)
+def direction_of(vector, otherwise):
+    """Return the direction of a vector, another one if it has none."""
+    size = math.hypot(vector[0], vector[1])
+    return (vector[0] / size, vector[1] / size) if size > 0.0 else otherwise
+
+
+@numba.njit(inline="always", **STRICT)
+def scaled(matrix, by):
+    """Return a matrix times a number."""
+    return by * matrix[0], by * matrix[1], by * matrix[2], by * matrix[3]
+
+
+@numba.njit(inline="always", **STRICT)
+def moments_of(begin, end, first, middle, last):
+    """Do `slipping.moments` for vectors: the integrals with ``1 - s``, then those with ``s``."""
+    one, other = moments(begin, end, first[0], middle[0], last[0]), moments(begin, end, first[1], middle[1], last[1])
+    return (one[0], other[0]), (one[1], other[1])
+
+
+@numba.njit(inline="always", **STRICT)
+def stage_moments(begin, size, first, second):
+    """Return the integrals of the ratio of two stages over a part, with the weights of this step and of the next.
+
+    The mean of the slip over the part is that of its stages.
+    """
+    left = 1.0 - begin - size
+    one, other = (1.0 - STAGE) * (2.0 * STAGE * size + left), STAGE * (STAGE * size + left)
+    later = size * (one * first[0] + other * second[0]), size * (one * first[1] + other * second[1])
+    one, other = 1.0 - STAGE - one, STAGE - other
+    return later, (size * (one * first[0] + other * second[0]), size * (one * first[1] + other * second[1]))
+
+
+@numba.njit(**STRICT)
+def undone_by(matrix, vector):
+    """Return the force whose displacement under a compliance is a vector, beyond all bounds where there is none."""
+    a, b, c, d = matrix
+    determinant, trace = a * d - b * c, a + d
+    if abs(determinant) > SINGULAR * trace * trace:
+        return (d * vector[0] - b * vector[1]) / determinant, (a * vector[1] - c * vector[0]) / determinant
+    size = size_of(vector)
+    if size == 0.0:
+        return 0.0, 0.0
+    way = direction_of((a, c) if a >= d else (b, d), (1.0, 0.0))
+    moved = along(vector, way)
+    if trace > 0.0 and size_of(plus(vector, -moved, way)) <= ROUNDING * size:
+        return way[0] * moved / trace, way[1] * moved / trace
+    return BEYOND * vector[0] / size, BEYOND * vector[1] / size
+
+
+@numba.njit(inline="always", **STRICT)
+def breaks_at(ratio, grows, held):
+    """Return the share of a step after which a ratio that grows in a straight line from below `held` reaches it."""
+    square, half = along(grows, grows), along(ratio, grows)
+    missing = held * held - along(ratio, ratio)
+    if missing <= 0.0 or square == 0.0:
+        return 0.0 if missing <= 0.0 else 1.0
+    root = math.sqrt(half * half + square * missing)
+    return min(missing / (half + root) if half >= 0.0 else (root - half) / square, 1.0)
+
+
+@numba.njit(**STRICT)
+def slip_after(free, pull, law, laws, i, step):
+    """Return the slip ``u = free - pull r`` under a set-valued law, and its ratio: the secant method within a bracket.
+
+    The ratio of incipient sliding brings it to rest.
+    """
+    needed, most = undone_by(pull, free), sliding_ratio(law, laws, i, 0.0)
+    asked = size_of(needed)
+    if asked <= most:
+        return (0.0, 0.0), needed
+    # With (speed + ratio pull) way = free, the error is the length of 1 over that of the way, less one.
+    low, low_error = 0.0, most / asked - 1.0
+    high, high_error, side = size_of(free), 1.0, 0
+    speed, ratio, way = high, most, free
+    for _ in range(TRIALS):
+        ratio = sliding_ratio(law, laws, i, speed / step)
+        stiff = speed + ratio * pull[0], ratio * pull[1], ratio * pull[2], speed + ratio * pull[3]
+        way = undone_by(stiff, free)
+        error = 1.0 / size_of(way) - 1.0
+        if abs(error) <= SETTLED:
+            break
+        if error > 0.0:
+            high, high_error = speed, error
+            low_error = 0.5 * low_error if side > 0 else low_error
+            side = 1
+        else:
+            low, low_error = speed, error
+            high_error = 0.5 * high_error if side < 0 else high_error
+            side = -1
+        if high - low <= SETTLED * high:
+            break
+        speed = low - low_error * (high - low) / (high_error - low_error)
+        if not low < speed < high:
+            speed = 0.5 * (low + high)
+    way = direction_of(way, (1.0, 0.0))
+    return (speed * way[0], speed * way[1]), (ratio * way[0], ratio * way[1])
+
+
+@numba.njit(inline="always", **STRICT)
+def is_straight(slip, drive, pull, way):
+    """Return whether a slip stays on its line but for rounding."""
+    dragged = times(pull, way)
+    reach = size_of(slip) + size_of(drive[0]) + size_of(drive[1]) + size_of(dragged)
+    across = -way[1], way[0]
+    strays = abs(along(slip, across)) + abs(along(drive[0], across)) + abs(along(drive[1], across))
+    return strays + abs(along(dragged, across)) <= ROUNDING * reach
+
+
+@numba.njit(**STRICT)
+def slide_straight(slip, begin, drive, pull, way, law, laws, i, step):
+    """Slide along a line, as in the plane."""
+    drives = along(drive[0], way), along(drive[1], way)
+    pulled = along(way, times(pull, way))
+    later, past, stuck = slide_on_line(along(slip, way), begin, drives, pulled, 1.0, law, laws, i, step)
+    return (later * way[0], later * way[1]), (past * way[0], past * way[1]), stuck
+
+
+@numba.njit(**STRICT)
+def hold_from(begin, drive, pull, held):
+    """Return the ratios that hold a contact at rest from a time of the step on, until it breaks away or the step ends.
+
+    Returns
+    -------
+    later, past : tuple of float
+        Integrals of the ratio, with the weights of this step and of the next.
+    end : float
+        Time at which it breaks away.
+    """
+    first = undone_by(pull, plus(drive[0], begin, drive[1]))
+    if size_of(first) > held:
+        return (0.0, 0.0), (0.0, 0.0), begin
+    last = undone_by(pull, plus(drive[0], 1.0, drive[1]))
+    grows = plus(last, -1.0, first)
+    share = 1.0 if size_of(last) <= held else breaks_at(first, grows, held)
+    end = begin + share * (1.0 - begin) if share < 1.0 else 1.0
+    last = plus(first, share, grows)
+    later, past = moments_of(begin, end, first, plus(first, 0.5 * share, grows), last)
+    return later, past, end
+
+
+@numba.njit(inline="always", **STRICT)
+def part_in_space(slip, drive, pull, law, laws, i, step):
+    """Return the size of the next part of the way: as `slipping.part_of`, and where the slip turns or ends, small."""
+    speed = size_of(slip)
+    if speed == 0.0:
+        return 1.0 / MOST_TURNS
+    friction, way = sliding_ratio(law, laws, i, speed / step), (slip[0] / speed, slip[1] / speed)
+    dragged = times(pull, way)
+    rate = size_of(plus(drive, -friction, dragged))
+    part = part_of(speed, rate, friction, along(way, dragged), law, laws, i, step)
+    return max(1.0 / (1.0 / part + rate / speed), min(part, 1.0 / MOST_TURNS))
+
+
+@numba.njit(**STRICT)
+def slide_through(slip, begin, drive, pull, way, law, laws, i, step):
+    """Slide from a time of the step on, under a set-valued law.
+
+    `drive` are its value at the beginning of the step and its change over it, `way` the direction if the slip is on a
+    line. Each part takes the rule of two stages of laws with a state, which finds slip or rest in each; it is
+    continuous where a slip turns about zero. Returns the same as `slipping.slide_through`.
+    """
+    if is_straight(slip, drive, pull, way):
+        return slide_straight(slip, begin, drive, pull, way, law, laws, i, step)
+    later, past, held = (0.0, 0.0), (0.0, 0.0), holding_ratio(law, laws, i, True)
+    # From here on at rest, which it is not yet at the beginning.
+    rested = False
+    for _ in range(2 * MOST_PARTS):
+        if begin >= 1.0:
+            break
+        if rested:
+            more, less, end = hold_from(begin, drive, pull, held)
+            later, past = plus(later, 1.0, more), plus(past, 1.0, less)
+            if end >= 1.0:
+                return later, past, 1.0 - begin
+            begin = end
+        driven = plus(drive[0], begin, drive[1])
+        size = min(part_in_space(slip, driven, pull, law, laws, i, step), 1.0 - begin)
+        matrix = scaled(pull, STAGE * size)
+        free = plus(plus(slip, size * STAGE, driven), size * GROWTH_AT_STAGE * size, drive[1])
+        _, first = slip_after(free, matrix, law, laws, i, step)
+        driven = plus(driven, 0.5 * size, drive[1])
+        free = plus(plus(slip, size, driven), -size * (1.0 - STAGE), times(pull, first))
+        slip, second = slip_after(free, matrix, law, laws, i, step)
+        more, less = stage_moments(begin, size, first, second)
+        later, past, begin = plus(later, 1.0, more), plus(past, 1.0, less), begin + size
+        rested = slip[0] == 0.0 and slip[1] == 0.0
+    return later, past, 0.0
+
+
+@numba.njit(**STRICT)
+def after_break(earlier, needed, grows, held, drive, pull, law, laws, i, step):
+    """Slide on from a stick that broke within the last step; results as those of `ratio_over_step`."""
+    broke = breaks_at(earlier, grows, held)
+    sliding = sliding_ratio(law, laws, i, 0.0)
+    way = direction_of(plus(earlier, broke, grows) if broke > 0.0 else needed, (1.0, 0.0))
+    friction = sliding * way[0], sliding * way[1]
+    stuck, left, third = 0.5 * broke * broke, 0.5 * (1.0 - broke * broke), broke**3 / 3.0
+    past = (
+        stuck * earlier[0] + grows[0] * third + left * friction[0],
+        stuck * earlier[1] + grows[1] * third + left * friction[1],
+    )
+    begun = times(pull, plus(earlier, -1.0, friction))
+    begun = (1.0 / 3.0 - third) * drive[1][0] + left * begun[0], (1.0 / 3.0 - third) * drive[1][1] + left * begun[1]
+    more, rest, stuck = slide_through(begun, 0.0, drive, pull, way, law, laws, i, step)
+    return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
+
+
+@numba.njit(**STRICT)
+def ratio_over_step(normal, slips, strays, w, law, laws, i, before, let_go, step):
+    """Return the ratios of forces over a step under a set-valued law, past parts, status and share of stick.
+
+    As `slipping.ratio_over_step`; `slips` are those without the forces of this contact.
+    """
+    was, last, past = before[0], before[1], before[7]
+    pull = normal * w[4], normal * w[5], normal * w[7], normal * w[8]
+    moved = slips[0] + w[3] * normal, slips[1] + w[6] * normal
+    held = holding_ratio(law, laws, i, was == STICKING and not let_go)
+    missed = moved[0] + strays[0], moved[1] + strays[1]
+    needed = undone_by(pull, missed)
+    asked = size_of(needed)
+    if was == STICKING and last[0] == 0.0 and last[1] == 0.0:
+        # At rest for a step or more: the force grows through the step as it did in the last one.
+        share = 1.0 / before[4] if before[4] > 0.0 else 0.0
+        earlier = (share * before[5][0], share * before[5][1]) if share > 0.0 else needed
+        grows = plus(needed, -1.0, earlier)
+        beyond = plus(needed, 1.0, grows)
+        drive = missed, plus(missed, -1.0, times(pull, earlier)) if asked < BEYOND else (0.0, 0.0)
+        if asked > held:
+            return after_break(earlier, needed, grows, held, drive, pull, law, laws, i, step)
+        if not let_go and size_of(beyond) <= held:
+            return needed, (0.5 * needed[0] + grows[0] / 3.0, 0.5 * needed[1] + grows[1] / 3.0), STICKING, 1.0
+        broke = breaks_at(needed, grows, held)
+        at_break = plus(needed, broke, grows)
+        way = direction_of(at_break, direction_of(beyond, (1.0, 0.0)))
+        first, less = moments_of(0.0, broke, needed, plus(needed, 0.5 * broke, grows), at_break)
+        more, rest, stuck = slide_through((0.0, 0.0), broke, drive, pull, way, law, laws, i, step)
+        ratio = plus(first, 1.0, more)
+        ratio = ratio[0] + 0.5 * needed[0] - grows[0] / 6.0, ratio[1] + 0.5 * needed[1] - grows[1] / 6.0
+        return ratio, plus(less, 1.0, rest), STOPPED if stuck > 0.0 else SLIDING, broke + stuck
+    rests = needed, (0.5 * needed[0], 0.5 * needed[1]), STICKING, 1.0
+    if was == STICKING:
+        # It came to rest within the last step.
+        short = plus(needed, -1.0, past)
+        if not let_go and 2.0 * size_of(short) <= held:
+            return rests
+        drive = plus(missed, -1.0, times(pull, past))
+        drive = 2.0 * drive[0], 2.0 * drive[1]
+        way = direction_of(drive, (1.0, 0.0))
+        more, rest, stuck = slide_through((0.0, 0.0), 0.0, (drive, (0.0, 0.0)), pull, way, law, laws, i, step)
+        return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
+    begun = 0.5 * (last[0] + moved[0]), 0.5 * (last[1] + moved[1])
+    drive = moved[0] - last[0], moved[1] - last[1]
+    if was != SLIDING:
+        # It lands: half of its force acts before the step.
+        if not let_go and asked <= held:
+            return rests
+        speed, way = size_of(begun), direction_of(begun, direction_of(drive, (1.0, 0.0)))
+        friction = 0.5 * sliding_ratio(law, laws, i, speed / step)
+        past = friction * way[0], friction * way[1]
+    slip = plus(begun, -1.0, times(pull, past))
+    way = direction_of(slip, direction_of(drive, (1.0, 0.0)))
+    more, rest, stuck = slide_through(slip, 0.0, (drive, (0.0, 0.0)), pull, way, law, laws, i, step)
+    return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
+
+
+@numba.njit(inline="always", **STRICT)
+def friction_after(law, laws, i, state, speed, time):
+    """Return the factors of the state and of the slip velocity in the ratio of a law with internal state after a time.
+
+    Both depend on the speed alone; only LuGre's bristles contribute the first.
+    """
+    if law == at.LUGRE:
+        kept, share, _, _, _ = bristles_over(laws, i, speed, time)
+        felt = laws[i, 3] - laws[i, 4] * speed / bristle_limit(laws, i, speed)[0]
+        return felt * kept, felt * time * share + laws[i, 4] + laws[i, 5]
+    ratio, slope = ratio_after(law, laws, i, state[0], speed, time)
+    return 0.0, ratio / speed if speed > 0.0 else slope
+
+
+@numba.njit(inline="always", **STRICT)
+def moved_at(speed, free, pull, law, laws, i, state, time):
+    """Return the slip velocity that follows from an assumed speed, and the ratios."""
+    holds, drags = friction_after(law, laws, i, state, speed, time)
+    kept = holds * state[0], holds * state[1]
+    left = plus(free, -1.0, times(pull, kept))
+    stiff = 1.0 + drags * pull[0], drags * pull[1], drags * pull[2], 1.0 + drags * pull[3]
+    share = 1.0 / (stiff[0] * stiff[3] - stiff[1] * stiff[2])
+    velocity = share * (stiff[3] * left[0] - stiff[1] * left[1]), share * (stiff[0] * left[1] - stiff[2] * left[0])
+    return velocity, plus(kept, drags, velocity)
+
+
+@numba.njit(**STRICT)
+def velocity_after(free, pull, guess, law, laws, i, state, time):
+    """Return the slip velocity ``v = free - pull r`` and the ratios of a law with internal state after some time.
+
+    At a given speed the law is linear in the velocity; the speed sought is that which results, on the scale
+    ``sinh(y)``, so that creep and sliding share one scale: the secant method within a bracket.
+    """
+    scale = speed_scale(law, laws, i, state[0])
+    velocity, ratio = moved_at(0.0, free, pull, law, laws, i, state, time)
+    speed = size_of(velocity)
+    if speed == 0.0:
+        return velocity, ratio
+    # The error is the assumed speed relative to that which results, less one.
+    low, low_error = 0.0, -1.0
+    high = math.asinh((guess if guess > 0.0 else speed) / scale)
+    high_error = 1.0
+    for _ in range(TRIALS):
+        speed = scale * math.sinh(high)
+        velocity, ratio = moved_at(speed, free, pull, law, laws, i, state, time)
+        reached = size_of(velocity)
+        if reached == 0.0:
+            high_error = 1.0
+            break
+        high_error = speed / reached - 1.0
+        if high_error >= 0.0:
+            break
+        low, low_error, high = high, high_error, max(1.5 * high, math.asinh(2.0 * speed / scale))
+    side = 0
+    for _ in range(TRIALS):
+        if high_error == 0.0 or high - low <= SETTLED * high:
+            break
+        y = low - low_error * (high - low) / (high_error - low_error)
+        if not low < y < high:
+            y = 0.5 * (low + high)
+            if not low < y < high:
+                break
+        speed = scale * math.sinh(y)
+        velocity, ratio = moved_at(speed, free, pull, law, laws, i, state, time)
+        reached = size_of(velocity)
+        error = speed / reached - 1.0 if reached > 0.0 else 1.0
+        if abs(error) <= SETTLED:
+            break
+        if error > 0.0:
+            high, high_error = y, error
+            low_error = 0.5 * low_error if side > 0 else low_error
+            side = 1
+        else:
+            low, low_error = y, error
+            high_error = 0.5 * high_error if side < 0 else high_error
+            side = -1
+    return velocity, ratio
+
+
+@numba.njit(inline="always", **STRICT)
+def state_after(law, laws, i, state, velocity, time):
+    """Return the internal states after some time at a constant slip velocity, exactly."""
+    speed = size_of(velocity)
+    if law == at.LUGRE:
+        kept, share, _, _, _ = bristles_over(laws, i, speed, time)
+        taken = time * share
+        return kept * state[0] + taken * velocity[0], kept * state[1] + taken * velocity[1]
+    return next_state(law, laws, i, state[0], speed, time), state[1]
+
+
+@numba.njit(**STRICT)
+def ratio_of_state(law, laws, i, state, velocity):
+    """Return the ratios of a law with internal state at a slip velocity."""
+    speed = size_of(velocity)
+    if law == at.LUGRE:
+        turned = plus(velocity, -speed / bristle_limit(laws, i, speed)[0], state)
+        return (
+            laws[i, 3] * state[0] + laws[i, 4] * turned[0] + laws[i, 5] * velocity[0],
+            laws[i, 3] * state[1] + laws[i, 4] * turned[1] + laws[i, 5] * velocity[1],
+        )
+    ratio, way = state_ratio(law, laws, i, state[0], speed), direction_of(velocity, (1.0, 0.0))
+    return ratio * way[0], ratio * way[1]
+
+
+@numba.njit(**STRICT)
+def ratio_with_state(normal, slips, w, law, laws, i, before, step):
+    """Return the ratios of forces over a step under a law with internal state, past parts, and the new states.
+
+    As `slipping.ratio_with_state`.
+    """
+    was, last, earlier, state, past = before[0], before[1], before[2], before[3], before[7]
+    pull = normal * w[4], normal * w[5], normal * w[7], normal * w[8]
+    moved = slips[0] + w[3] * normal, slips[1] + w[6] * normal
+    begun, drive = (0.5 * (last[0] + moved[0]), 0.5 * (last[1] + moved[1])), plus(moved, -1.0, last)
+    grows = 0.0, 0.0
+    if was == SEPARATED:
+        past = ratio_of_state(law, laws, i, state, (begun[0] / step, begun[1] / step))
+        past = 0.5 * past[0], 0.5 * past[1]
+    elif before[4] > 0.0:
+        dragged = times(pull, before[5])
+        grows = (
+            drive[0] - (last[0] - earlier[0]) - dragged[0] / before[4],
+            drive[1] - (last[1] - earlier[1]) - dragged[1] / before[4],
+        )
+    slip = plus(plus(begun, -1.0, times(pull, past)), -1.0 / 6.0, grows)
+    squares = along(slip, slip) + along(drive, drive)
+    pulled = 0.5 * (pull[0] + pull[3])
+    if squares > 0.0:
+        pulled = (along(slip, times(pull, slip)) + along(drive, times(pull, drive))) / squares
+    count = parts_with_state(size_of(slip), size_of(drive), pulled, law, laws, i, step)
+    size, later, rest, speed = 1.0 / count, (0.0, 0.0), (0.0, 0.0), size_of(slip) / step
+    time, matrix = STAGE * size * step, scaled(pull, STAGE * size / step)
+    for k in range(count):
+        begin = k * size
+        driven = plus(drive, begin, grows)
+        free = plus(plus(slip, size * STAGE, driven), size * GROWTH_AT_STAGE * size, grows)
+        free = free[0] / step, free[1] / step
+        velocity, first = velocity_after(free, matrix, speed, law, laws, i, state, time)
+        state, speed = state_after(law, laws, i, state, velocity, size * step - time), size_of(velocity)
+        driven = plus(driven, 0.5 * size, grows)
+        free = plus(plus(slip, size, driven), -size * (1.0 - STAGE), times(pull, first))
+        free = free[0] / step, free[1] / step
+        velocity, second = velocity_after(free, matrix, speed, law, laws, i, state, time)
+        state, speed = state_after(law, laws, i, state, velocity, time), size_of(velocity)
+        more, less = stage_moments(begin, size, first, second)
+        later, rest = plus(later, 1.0, more), plus(rest, 1.0, less)
+        slip = velocity[0] * step, velocity[1] * step
+    return plus(past, 1.0, later), rest, state
