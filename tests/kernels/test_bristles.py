@@ -1,16 +1,17 @@
-"""LuGre's bristles in space: one step against root finding, and a march against a slow twin of its equations."""
+"""Slips in space on their way through a step: one step against root finding, a march against its slow twin."""
 
 from __future__ import annotations
 
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from physics.cases import SCHEME_NAMES
-from scipy.optimize import root
 
 import stridula as st
 from kernels.general_twin import before_start, central, exact
+from kernels.way_in_space_twin import SLIDING, closing, on_bristles, sliding
 from stridula._kernels import layout as at
 from stridula.integration.contact_solve import GaussSeidel
 from stridula.integration.forces import forces_of
@@ -18,81 +19,81 @@ from stridula.integration.forces import forces_of
 LAW = st.LuGre(0.6, 0.35, 0.05, 2e4, 8.0, 0.2)
 
 
-def bristles_after(law, z, v, h):
-    """Deflections after `h` at the constant slip velocity `v`, both vectors: a relaxation to the slip's direction."""
-    speed = np.linalg.norm(v)
-    curve = law.kinetic + (law.static - law.kinetic) * np.exp(-((speed / law.velocity) ** 2))
-    rate = law.stiffness * speed / curve
-    if rate * h < 1e-9:
-        return z + (v - rate * z) * h
-    return v / rate + (z - v / rate) * np.exp(-rate * h)
-
-
-def ratios(law, z, v, h):
-    """Ratios of forces along both tangents over a step: with the mean of the bristles, and their rate."""
-    new = bristles_after(law, z, v, h)
-    return law.stiffness * (z + new) / 2 + law.damping * (new - z) / h + law.viscous * v
-
-
-def forces_by_roots(law, gap, slip, w, z, last, earlier, h):
-    """Normal force, tangential forces and slip velocity of a closed contact, from three equations in three unknowns."""
-    free = (9 * slip + 6 * last + earlier) / (16 * h)
-    size = -gap / w[0, 0]
-    moves = np.abs(free).max() + 9 / (16 * h) * np.abs(w[1:]).max() * size
-
-    def pushed(x):
-        normal, v = size * x[0], moves * x[1:]
-        return normal, v, np.array([normal, *(-normal * ratios(law, z, v, h))])
-
-    def left(x):
-        _, v, forces = pushed(x)
-        reached = (9 * (slip + w[1:] @ forces) + 6 * last + earlier) / (16 * h)
-        return np.array([(gap + w[0] @ forces) / -gap, *((v - reached) / moves)])
-
-    found = []
-    for start in (
-        (3 * last - earlier) / (2 * h * moves),
-        free / moves,
-        np.zeros(2),
-        -free / moves,
-        1e-3 * free / moves,
-    ):
-        solved = root(left, np.array([1.0, *start]), tol=1e-15)
-        # Once more from there, to round-off.
-        solved = root(left, solved.x, tol=1e-15)
-        if np.abs(left(solved.x)).max() < 1e-12 and solved.x[0] > 0:
-            found.append(solved.x)
-    assert found
-    assert np.ptp(found, axis=0).max() < 1e-8
-    normal, v, forces = pushed(found[0])
-    return normal, -forces[1:], v
-
-
 def test_one_step_has_the_forces_of_root_finding():
     random, step, speeds = np.random.default_rng(11), 1e-4, []
     codes = np.array([at.LUGRE, at.SECOND_TANGENT])
     laws = np.zeros((2, at.LAW_PARAMETERS))
     laws[:, :6] = list(LAW.parameters().values())
-    for _ in range(300):
-        half = random.standard_normal((3, 3))
-        w = 1e-8 * 10.0 ** random.uniform(-1.0, 1.0) * (half @ half.T + 1.5 * np.eye(3))
-        gap = -(10.0 ** random.uniform(-8.0, -5.0))
+    for _ in range(100):
+        w, gap = compliance_of(random), -(10.0 ** random.uniform(-8.0, -5.0))
         last = step * 10.0 ** random.uniform(-4.0, 0.5) * random.standard_normal(2)
         earlier = last * (1.0 + 0.1 * random.standard_normal(2))
         slip = last + abs(gap) * random.standard_normal(2)
         z = 0.6 * LAW.kinetic / LAW.stiffness * random.standard_normal(2)
-        normal, pulled, v = forces_by_roots(LAW, gap, slip, w, z, last, earlier, step)
+        before = SimpleNamespace(
+            status=SLIDING,
+            last=last,
+            earlier=earlier,
+            state=z,
+            normal=abs(gap) / w[0, 0],
+            tangential=0.3 * abs(gap) / w[0, 0] * random.standard_normal(2),
+            past=0.15 * random.standard_normal(2),
+        )
+        normal, (ratios, _, after) = closing(gap, w, partial(on_bristles, LAW, before, slip, w, step))
+        carried = carried_of(before, z)
         compliance = np.zeros((4, 4))
         compliance[np.ix_([0, 1, 3], [0, 1, 3])] = w
-        carried = np.zeros((2, at.CARRIED))
-        carried[:, at.FRICTION_STATE], carried[:, at.LAST_SLIP], carried[:, at.EARLIER_SLIP] = z, last, earlier
         found = forces_of(np.array([gap, 0.0]), slip, compliance, (codes, laws), carried, step, GaussSeidel())
-        assert found[0, 0] == pytest.approx(normal, rel=1e-10)
-        np.testing.assert_allclose(found[:, 1], pulled, atol=1e-9 * normal)
-        speeds.append(np.linalg.norm(v))
+        assert found[0, 0] == pytest.approx(normal, rel=1e-9)
+        np.testing.assert_allclose(found[:, 1], normal * ratios, atol=1e-8 * normal)
+        speeds.append(np.linalg.norm(after - z) / step)
     # Creep and sliding.
     assert np.mean(np.array(speeds) < LAW.velocity) > 0.1
-    assert np.mean(np.array(speeds) > LAW.velocity) > 0.1
+    assert np.mean(np.array(speeds) > 0.1 * LAW.velocity) > 0.1
+
+
+@pytest.mark.parametrize("law", [st.StaticKinetic(0.5, 0.3), st.Stribeck(0.5, 0.3, 0.05)], ids=["constant", "falling"])
+def test_one_step_of_a_slip_that_turns_has_the_forces_of_root_finding(law):
+    random, step, turned = np.random.default_rng(12), 1e-4, []
+    codes = np.array([at.STATIC_KINETIC if law.law == "static-kinetic" else at.STRIBECK, at.SECOND_TANGENT])
+    laws = np.zeros((2, at.LAW_PARAMETERS))
+    laws[:, : len(law.parameters())] = list(law.parameters().values())
+    for _ in range(100):
+        w, gap = compliance_of(random), -(10.0 ** random.uniform(-7.0, -6.0))
+        last = step * 10.0 ** random.uniform(-3.5, -1.5) * random.standard_normal(2)
+        slip = last + 0.5 * abs(gap) * random.standard_normal(2)
+        way = last / np.linalg.norm(last)
+        before = SimpleNamespace(
+            status=SLIDING, last=last, earlier=last, normal=0.0, tangential=np.zeros(2), past=0.15 * way
+        )
+        normal, found = closing(gap, w, partial(sliding, law, last, before.past, slip, w, step))
+        if found is None:
+            continue
+        compliance = np.zeros((4, 4))
+        compliance[np.ix_([0, 1, 3], [0, 1, 3])] = w
+        carried = carried_of(before, np.zeros(2))
+        forces = forces_of(np.array([gap, 0.0]), slip, compliance, (codes, laws), carried, step, GaussSeidel())
+        assert forces[0, 0] == pytest.approx(normal, rel=1e-9)
+        np.testing.assert_allclose(forces[:, 1], normal * found[0], atol=1e-8 * normal)
+        turned.append(abs(way[0] * found[0][1] - way[1] * found[0][0]) / np.linalg.norm(found[0]))
+    assert len(turned) > 30
+    assert np.mean(np.array(turned) > 0.1) > 0.2
+
+
+def compliance_of(random):
+    """A random compliance of normal and tangents [m/N], normal first."""
+    half = random.standard_normal((3, 3))
+    return 1e-8 * 10.0 ** random.uniform(-1.0, 1.0) * (half @ half.T + 4.0 * np.eye(3))
+
+
+def carried_of(before, state):
+    """What a contact of that past carries, a row for each tangent."""
+    carried = np.zeros((2, at.CARRIED))
+    carried[:, at.STATUS], carried[:, at.LAST_NORMAL] = before.status, before.normal
+    carried[:, at.LAST_SLIP], carried[:, at.EARLIER_SLIP] = before.last, before.earlier
+    carried[:, at.LAST_TANGENTIAL], carried[:, at.PAST_RATIO] = before.tangential, before.past
+    carried[:, at.FRICTION_STATE] = state
+    return carried
 
 
 # A march.
@@ -129,20 +130,34 @@ def twin(scheme, law=LAW):
     belt = np.array([BELT, LATERAL])
     last = rows[1:] @ (q - q_before) - belt * STEP
     earlier = 3 * last + 2 * STEP * belt
-    z, out = np.zeros(2), SimpleNamespace(normal=[], tangential=[], state=[], slip=[])
+    past = SimpleNamespace(status=0, last=last, earlier=earlier, state=np.zeros(2), normal=0.0)
+    past.tangential, past.past = np.zeros(2), np.zeros(2)
+    out = SimpleNamespace(normal=[], tangential=[], state=[], slip=[])
     for n in range(STEPS):
         free = a @ q - b @ q_before + load @ force
         # For the integral of the sine from zero.
         rise = LIFT * (1 - np.cos(2 * np.pi * FREQUENCY * (n + 1) * STEP)) / (2 * np.pi * FREQUENCY)
         gap, slip = GAP - rise + rows[0] @ free, rows[1:] @ (free - q) - belt * STEP
-        pushes, velocity = np.zeros(3), None
+        pushes, ratios, rest, z = np.zeros(3), np.zeros(2), np.zeros(2), np.zeros(2)
         if gap < 0:
-            normal, pulled, velocity = forces_by_roots(law, gap, slip, w, z, last, earlier, STEP)
-            pushes = np.array([normal, *-pulled])
+            normal, (ratios, rest, z) = closing(gap, w, partial(on_bristles, law, past, slip, w, STEP))
+            pushes = np.array([normal, *(-normal * ratios)])
         q_before, q = q, free + load @ rows.T @ pushes
-        z = np.zeros(2) if velocity is None else bristles_after(law, z, velocity, STEP)
-        last, earlier = rows[1:] @ (q - q_before) - belt * STEP, last
-        for name, value in (("normal", pushes[0]), ("tangential", -pushes[1:]), ("state", z), ("slip", last / STEP)):
+        past = SimpleNamespace(
+            status=2 if gap < 0 else 0,
+            last=rows[1:] @ (q - q_before) - belt * STEP,
+            earlier=past.last,
+            state=z,
+            normal=pushes[0],
+            tangential=-pushes[1:],
+            past=rest,
+        )
+        for name, value in (
+            ("normal", pushes[0]),
+            ("tangential", -pushes[1:]),
+            ("state", z),
+            ("slip", past.last / STEP),
+        ):
             getattr(out, name).append(value)
     return SimpleNamespace(**{name: np.array(values) for name, values in vars(out).items()})
 

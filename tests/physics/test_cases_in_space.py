@@ -130,7 +130,18 @@ def test_every_case_is_turned_or_named():
     assert len(set(named)) == len(named)
     assert set(named) <= set(BY_NAME)
     modules = {BY_NAME[name].run.__module__.rpartition(".")[2] for name in others}
-    assert modules == {"partial_slip", "space", "surfaces", "turning", "open_air", "sounding_spheres"}
+    assert modules == {
+        "partial_slip",
+        "space",
+        "surfaces",
+        "turning",
+        "open_air",
+        "sounding_spheres",
+        "clockwork",
+        "halved_steps",
+        "linings",
+        "shaken",
+    }
 
 
 @pytest.mark.parametrize("name", [*MODES, *SIGNALS])

@@ -1,0 +1,143 @@
+"""A slow twin of the slip on its way through a step in space: `way_twin` for vectors of both tangents."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import root
+
+import stridula as st
+from kernels.general_twin import curve
+
+SEPARATED, STICKING, SLIDING = 0, 1, 2
+SHARE = 1 - np.sqrt(0.5)
+INNER = np.array([[SHARE, 0.0], [1 - SHARE, SHARE]])
+# The growth of the drive, divided so that creep under it has the slip of its stages.
+GROWTH = np.array([(1 / 6 - SHARE / 2) / (1 - SHARE), 0.5])
+
+
+def bristles_after(law, z, v, h):
+    """Deflections after `h` at the constant slip velocity `v`, both vectors: a relaxation to the slip's direction."""
+    speed = np.linalg.norm(v)
+    rate = law.stiffness * speed / limit(law, speed)
+    if rate * h < 1e-9:
+        return z + (v - rate * z) * h
+    return v / rate + (z - v / rate) * np.exp(-rate * h)
+
+
+def limit(law, speed):
+    """The coefficient of steady sliding without its viscous part."""
+    return law.kinetic + (law.static - law.kinetic) * np.exp(-((speed / law.velocity) ** 2))
+
+
+def bristles_ratio(law, z, v):
+    """Ratios of forces along both tangents."""
+    rate = v - law.stiffness * np.linalg.norm(v) / limit(law, np.linalg.norm(v)) * z
+    return law.stiffness * z + law.damping * rate + law.viscous * v
+
+
+def solved(error, start):
+    """The vector at which an error vanishes, to round-off."""
+    size = max(np.abs(start).max(), 1e-300)
+    for begin in (start / size, 0.5 * start / size, 1e-3 * start / size, np.zeros(2)):
+        found = root(lambda x: error(size * x) / size, begin, tol=1e-15)
+        found = root(lambda x: error(size * x) / size, found.x, tol=1e-15)
+        if np.abs(error(size * found.x)).max() < 1e-12 * size:
+            return size * found.x
+    raise AssertionError("no velocity found")
+
+
+def weighted(size, begin, ratios):
+    """The ratios of both stages of a part, weighted for this step and for the next."""
+    velocities = INNER[1]
+    weights = size**2 * velocities @ INNER + size * velocities * (1 - begin - size)
+    return weights @ ratios, (size * velocities - weights) @ ratios
+
+
+def on_bristles(law, before, slip, w, h, normal):
+    """Return ratios, past parts and bristles of LuGre's law; `before` has status, slips, bristles, forces and past.
+
+    `slip` are those without forces of this contact, `w` the compliance for ``(N, -T1, -T2)``.
+    """
+    pull, moved = w[1:, 1:] * normal, slip + w[1:, 0] * normal
+    begun, drive = 0.5 * (before.last + moved), moved - before.last
+    past, grows, z = before.past, np.zeros(2), before.state
+    if before.status == SEPARATED:
+        past = 0.5 * bristles_ratio(law, z, begun / h)
+    elif before.normal > 0:
+        grows = drive - (before.last - before.earlier) - pull @ before.tangential / before.normal
+    u = begun - pull @ past - grows / 6
+    squares = u @ u + drive @ drive
+    pulled = (u @ pull @ u + drive @ pull @ drive) / squares if squares else np.trace(pull) / 2
+    change = (np.linalg.norm(drive) + pulled * law.static) / (4 * law.velocity * h)
+    count = int(min(1 + max(np.sqrt(pulled * law.stiffness) / 0.25, change), 64))
+    size, later, rest = 1 / count, np.zeros(2), np.zeros(2)
+    for k in range(count):
+        driven, ratios = drive + grows * k * size, np.zeros((2, 2))
+        for stage in range(2):
+            free = u + size * (
+                INNER[stage].sum() * driven + GROWTH[stage] * size * grows - pull @ (INNER[stage] @ ratios)
+            )
+
+            def ratio(v, z=z):
+                return bristles_ratio(law, bristles_after(law, z, v, SHARE * size * h), v)
+
+            def error(v, free=free, ratio=ratio):
+                return v - (free - SHARE * size * pull @ ratio(v)) / h
+
+            v = solved(error, u / h if u.any() else free / h)
+            ratios[stage] = ratio(v)
+            z = bristles_after(law, z, v, (1 - SHARE, SHARE)[stage] * size * h)
+        more, less = weighted(size, k * size, ratios)
+        later, rest, u = later + more, rest + less, v * h
+    return past + later, rest, z
+
+
+def sliding(law, last, past, slip, w, h, normal):
+    """Return ratios and past parts of a contact that slides on under a set-valued law, none if it comes to rest."""
+    pull, moved = w[1:, 1:] * normal, slip + w[1:, 0] * normal
+    drive, begin, later, rest = moved - last, 0.0, np.zeros(2), np.zeros(2)
+    u = 0.5 * (last + moved) - pull @ past
+    incipient = curve(law, 0.0)
+    while begin < 1:
+        speed, way = np.linalg.norm(u), u / np.linalg.norm(u)
+        friction = curve(law, speed / h)
+        rate = np.linalg.norm(drive - friction * pull @ way)
+        part = 1.0
+        if not isinstance(law, st.StaticKinetic):
+            scale, viscous = law.velocity * h, law.viscous / h
+            steep = (friction - law.kinetic - viscous * speed) / scale + viscous
+            part = max(0.5 / (rate / (scale + speed) + way @ pull @ way * steep + 0.5), 1 / 64)
+        part = min(max(1 / (1 / part + rate / speed), min(part, 1 / 16)), 1 - begin)
+        ratios = np.zeros((2, 2))
+        for stage in range(2):
+            free = u + part * (INNER[stage].sum() * drive - pull @ (INNER[stage] @ ratios))
+            own = SHARE * part * pull
+            if np.linalg.norm(np.linalg.solve(own, free)) <= incipient:
+                return None
+
+            def ratio(moved):
+                size = np.linalg.norm(moved)
+                return curve(law, size / h) * moved / size if size else np.zeros(2)
+
+            def error(moved, free=free, own=own, ratio=ratio):
+                return moved - free + own @ ratio(moved)
+
+            moved_on = solved(error, free)
+            ratios[stage] = ratio(moved_on)
+        more, less = weighted(part, begin, ratios)
+        later, rest, u, begin = later + more, rest + less, moved_on, begin + part
+    return past + later, rest
+
+
+def closing(gap, w, ratio_under):
+    """The normal force that closes a gap and what goes with it: ``N = -gap / (w_nn - w_nt ratio(N))``."""
+    normal = -gap / w[0, 0]
+    for _ in range(200):
+        found = ratio_under(normal)
+        if found is None:
+            return normal, None
+        new = -gap / (w[0, 0] - w[0, 1:] @ found[0])
+        if abs(new - normal) <= 1e-15 * normal:
+            return new, found
+        normal = new
+    raise AssertionError("no normal force found")
