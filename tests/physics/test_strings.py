@@ -143,7 +143,7 @@ def test_the_violin_settles_in_helmholtz_motion(violin):
 
     Under a bow of finite width the string slips for beta, and while the corner passes from its one edge to the other:
     at most its width, 8 mm of 325, more. The velocity of the slips of an ideal string is ``-(1 - beta) / beta`` of the
-    bow's.
+    bow's; under this bow it is 2.5 % less, at this step as at a quarter of it.
     """
     _, run = violin
     assert int(run.unsolved_steps.sum()) == 0
@@ -158,7 +158,7 @@ def test_the_violin_settles_in_helmholtz_motion(violin):
     share = late.status_share.sel(contact="hair 3")
     slips, sticks = (share.sel(contact_status=word).values > 0.99 for word in ("sliding", "sticking"))
     velocity = late.velocity.values[:, 0]
-    assert np.median(velocity[slips]) == pytest.approx(-0.2 * 0.88 / 0.12, rel=0.02)
+    assert np.median(velocity[slips]) == pytest.approx(-0.2 * 0.88 / 0.12, rel=0.03)
     assert np.median(velocity[sticks]) == pytest.approx(0.2, rel=0.02)
     regime = st.regime(run, start=0.5)
     assert regime.regime == "stick-slip"

@@ -9,7 +9,7 @@ import xarray as xr
 
 from ..records.files import save as save_file
 from ..studies.loci import critical_value, critical_values, parameter_of, root_loci
-from .outputs import check_outputs
+from .outputs import check_outputs, check_record
 from .points import numbers_of
 from .stability import KINDS
 
@@ -24,6 +24,7 @@ def print_loci(
     **options: Any,
 ) -> None:
     """Print the parameter values at which stability changes, and optionally draw or write the modes."""
+    check_record(out)
     check_outputs(out, plot)
     key, numbers, unit = numbers_of(vary)
     about = {"units": unit, "overrides": overrides, **options}

@@ -14,8 +14,6 @@ RECORD = "--out"
 def check_outputs(out: str | None, plot: str | None, word: str = RECORD, figure: str = "--plot") -> None:
     """Raise ValueError or OSError if a file or a figure cannot be written; write nothing.
 
-    A file of the option ``--out`` is a record.
-
     Parameters
     ----------
     out, plot : str or None
@@ -25,8 +23,6 @@ def check_outputs(out: str | None, plot: str | None, word: str = RECORD, figure:
     """
     if out is not None and plot is not None and Path(out).resolve() == Path(plot).resolve():
         raise ArgumentError(figure, f"differ from {word}", plot, got=f"{plot!r} for both")
-    if out is not None and word == RECORD:
-        check_record(out)
     if plot is not None:
         from matplotlib.figure import Figure
 
@@ -38,9 +34,10 @@ def check_outputs(out: str | None, plot: str | None, word: str = RECORD, figure:
             check_writable(path)
 
 
-def check_record(out: str) -> None:
+def check_record(out: str | None) -> None:
     """Raise ValueError if the file of the option ``--out`` has the ending of another format than a record."""
-    check_ending(RECORD, out, RECORDS, "NetCDF file", "`stridula export` writes tables, --plot figures")
+    if out is not None:
+        check_ending(RECORD, out, RECORDS, "NetCDF file", "`stridula export` writes tables, --plot figures")
 
 
 def _format(path: str) -> str:

@@ -16,7 +16,7 @@ from ..scenarios.load import Scenario, load_scenario
 from .card import print_card
 from .doubts import doubts
 from .exits import FAILED, INTERRUPTED, Stopped
-from .outputs import check_outputs
+from .outputs import check_outputs, check_record
 from .warned import doubts_on_the_card
 
 # Ends of runs that can be heard.
@@ -42,6 +42,7 @@ def run_scenario(
     Stopped
         On Ctrl-C, or if the run failed, after the samples recorded so far are written.
     """
+    check_record(out)
     check_outputs(out, plot)
     with doubts_on_the_card():
         scenario = load_scenario(name, overrides)

@@ -19,7 +19,7 @@ from ..studies.fates import CHANGES, JOINS, LIVES, VIBRATES
 from ..studies.surveys import squeal_survey
 from ..studies.tables import survey_table
 from .consoles import wide_console
-from .outputs import check_outputs
+from .outputs import check_outputs, check_record
 from .points import Points
 from .sweeping import check_two_keys, closing, computing
 
@@ -49,6 +49,7 @@ def survey_scenario(
     Stopped
         On Ctrl-C, or if other machines fail; finished parts are kept.
     """
+    check_record(out)
     check_outputs(out, plot)
     if table is not None:
         _check_table(table, out, plot)

@@ -19,7 +19,7 @@ from ..studies.points import Grid
 from ..studies.sweeps import sweep
 from ..studies.swept import failures, usual_failure
 from .exits import FAILED, INTERRUPTED, Stopped
-from .outputs import check_outputs
+from .outputs import check_outputs, check_record
 from .points import Points
 from .regimes import print_agreement
 
@@ -46,6 +46,7 @@ def sweep_scenario(
     Stopped
         On Ctrl-C, or if other machines fail; finished parts are kept.
     """
+    check_record(out)
     check_outputs(out, plot)
     asked = asked_for(list(measures))
     if plot is not None:
