@@ -27,7 +27,7 @@ help:
 	@echo "make docs         build the documentation into docs/_build/html, warnings are errors"
 	@echo "make dist         wheel and sdist into dist, both checked, the wheel run on its own; minutes"
 	@echo "make bench        speed as a table of ratios, each measured in one run: C, Siconos, real time, scaling, start-up; minutes"
-	@echo "make convergence  the tables and figures of docs/convergence.rst, docs/step.rst and docs/trust.rst, in a quarter of an hour"
+	@echo "make convergence  the tables and figures of docs/convergence.rst, docs/step-of-two-beams.rst and docs/trust.rst, in a quarter of an hour"
 	@echo "make clean        remove .venv and everything built"
 
 # Python compiles on import what is used: pip would compile all of every package, which takes as long as installing it.
