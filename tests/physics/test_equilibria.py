@@ -9,6 +9,7 @@ import stridula as st
 from stridula.linear.complementarity import all_sets, searched
 
 from .blocks import Block, random_block
+from .sliding_systems import bar, rod
 
 
 def different(block: Block) -> list:
@@ -151,3 +152,20 @@ def test_a_rigid_face_is_the_limit_of_a_stiff_one():
     assert float(rigid.normal_force.sum()) == pytest.approx(21.0)
     moved = [one.tip_displacement.sel(direction="x").values for one in (rigid, stiff)]
     np.testing.assert_allclose(moved[0], moved[1], rtol=1e-3)
+
+
+@pytest.mark.parametrize(("push", "supported"), [(1.0, "pinned"), (300.0, "pinned"), (1.0, "free"), (300.0, "free")])
+def test_rounding_of_gaps_follows_from_the_bending_of_which_they_are_sums(push, supported):
+    """Two rods that bend a beam: the gaps of both are sums of displacements far larger than these gaps."""
+    track = bar()
+    drawn, other = rod(5.0, name="drawn"), rod(-5.0, name="other", root_support=supported)
+    contacts = [
+        st.PointContact(drawn.tip, track.at(0.05), friction=st.Coulomb(0.3)),
+        st.PointContact(other.tip, track.at(0.21), friction=st.Coulomb(0.2)),
+    ]
+    if supported == "pinned":
+        drives = [st.ImposedVelocity(drawn.root, 0.05, 2.0), st.Force(other.tip, y=-push)]
+    else:
+        drives = [st.Force(drawn.root, x=1.0, y=-2.0), st.Force(other.root, x=-1.0, y=-push)]
+    found = st.sliding_stability(st.System(contacts, drives))
+    assert (found.attrs["equilibria"], found.attrs["violated"]) == ("one", "")

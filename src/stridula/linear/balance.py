@@ -41,6 +41,8 @@ class Balance:
     opening, opening_acceleration : ndarray, shape (contacts,)
         Distance of the bodies at each contact [m], below zero where they overlap, and its acceleration by free rigid
         motions [m/s²].
+    terms : ndarray, shape (contacts,)
+        Sizes of the modal displacements by loads and contact forces of which the distance is the sum [m].
     place : ndarray, shape (2, contacts)
         Displacements along and across the tangents [m].
     determinant : float
@@ -59,6 +61,7 @@ class Balance:
     slip_acceleration: Array
     opening: Array
     opening_acceleration: Array
+    terms: Array
     place: Array
     determinant: float
     displacement: Array
@@ -112,12 +115,12 @@ def balance_of(
     count, share = len(status), sense * ratio
     load = structure.load - structure.damping @ structure.following(status)
     equations, right = _tangent_equations(structure, status, share, load, anchors, about or About(np.zeros((3, count))))
-    displacement = np.zeros(0)
+    displacement, loaded = np.zeros(0), equations.response.to(load)
     if exact:
         displacement, rigid, forces = equations.exact(load, *right)
         places = equations.response.rows @ displacement
     else:
-        forces, rigid, places = equations.reduced(equations.response.to(load), *right)
+        forces, rigid, places = equations.reduced(loaded, *right)
     closed, stuck = equations.closed, equations.stuck
     normal, tangential, lateral = np.zeros((3, count))
     normal[closed] = forces[: len(closed)]
@@ -125,6 +128,9 @@ def balance_of(
     tangential[stuck] = forces[len(closed) : len(closed) + len(stuck)]
     lateral[equations.lateral] = forces[len(closed) + len(stuck) :]
     gains = equations.response.felt @ rigid
+    terms = equations.response.terms(loaded[0], np.concatenate([normal, tangential, lateral]))
+    if exact:
+        terms = terms + np.abs(equations.response.rows[:count]) @ np.abs(displacement)
     return Balance(
         status,
         sense,
@@ -136,6 +142,7 @@ def balance_of(
         gains[count : 2 * count],
         structure.gaps + places[:count],
         gains[:count],
+        terms,
         places[count:].reshape(2, count),
         equations.determinant,
         displacement,

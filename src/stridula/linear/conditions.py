@@ -20,10 +20,9 @@ from .balance import (
     rank,
     rigid_rows,
 )
-from .response import Response
 from .structure import SEPARATED, SLIDING, STICKING, UNMOVED, Structure
 
-# Rounding of gaps relative to the displacements by the loads alone.
+# Rounding of gaps relative to the displacements of modes of which they are sums.
 ROUNDING = 1e-14
 # Largest number of contacts with which all minors are checked.
 MOST_CONTACTS = 10
@@ -74,14 +73,7 @@ def is_leaving(structure: Structure, at: Balance) -> bool:
 def _length(structure: Structure, at: Balance) -> float:
     """Return the size of the openings of contacts [m], by which their rounding is judged."""
     largest = float(np.abs(np.concatenate([at.opening, at.opening - structure.gaps, structure.gaps])).max())
-    alone = structure.once("largest", lambda: _displacement_alone(structure))
-    return max(largest, ROUNDING / ROUND_OFF * alone) or 1.0
-
-
-def _displacement_alone(structure: Structure) -> float:
-    """Return the largest opening of a contact by the loads if no contact pushes [m]."""
-    response = structure.once("response", lambda: Response(structure))
-    return float(np.abs(response.rows[: len(structure.lines)] @ response.to(structure.load)[0]).max(initial=0.0))
+    return max(largest, ROUNDING / ROUND_OFF * float(np.max(at.terms))) or 1.0
 
 
 def stopping(structure: Structure, at: Balance) -> list[int]:

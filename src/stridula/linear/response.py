@@ -49,6 +49,8 @@ class Response:
         self._size = size
         moved, self.pull = self.to(self.rows.T)
         self.compliance = self.rows @ moved
+        self._sizes = np.abs(self.rows[: len(lines)])
+        self._terms = self._sizes @ np.abs(moved)
         bent, self.opposed = self.to(structure.stiffness @ rigid)
         self.motions = rigid - bent
         felt = self.rows @ rigid
@@ -63,6 +65,18 @@ class Response:
         scale = self._scale.reshape((-1,) + (1,) * (force.ndim - 1))
         found = self._factors.solved(right / scale) / scale
         return found[: self._size], found[self._size :]
+
+    def terms(self, displacement: Array, forces: Array) -> Array:
+        """Return the sizes of the modal terms of openings, from which their rounding follows [m], shape (contacts,).
+
+        Parameters
+        ----------
+        displacement : ndarray, shape (modes,)
+            Modal displacements by the loads.
+        forces : ndarray, shape (3 contacts,)
+            Contact forces along `rows`.
+        """
+        return np.asarray(self._sizes @ np.abs(displacement) + self._terms @ np.abs(forces))
 
 
 class Factors:
