@@ -255,9 +255,8 @@ def forces_of(combination, gaps, slips, strayed, w, before, h, let_go):
             if combination[i] == "way":
                 if gap >= 0 or forces[2 * i] <= 0:
                     return None
-                found[i] = on_its_way(
-                    LAWS, before[i], forces[2 * i], gap, slip, strayed[i], w[pair, pair], h, i in let_go
-                )[0]
+                own = w[pair, pair]
+                found[i] = on_its_way(LAWS, before[i], forces[2 * i], gap, slip, strayed[i], own, h, i in let_go)[0]
                 continue
             turn = turned(gap, slip, w[pair, pair], before[i], i in let_go)
             if not turn:

@@ -66,10 +66,10 @@ def slide_on_its_way(gap, slip, strayed, w, law, laws, i, before, let_go, step):
     w_nn, w_nt = w[0], w[1]
     if set_valued(law) and before[0] != SLIDING:
         pressed, needed = sticking_forces(gap, slip + strayed, w)
-        if (
-            pressed > 0.0
-            and ratio_under(pressed, gap, slip, strayed, w, law, laws, i, before, let_go, step)[3] == STICKING
-        ):
+        sticks = False
+        if pressed > 0.0:
+            sticks = ratio_under(pressed, gap, slip, strayed, w, law, laws, i, before, let_go, step)[3] == STICKING
+        if sticks:
             sense = 1.0 if needed >= 0.0 else -1.0
             return pressed, needed, STICKING, w_nn - sense * laws[i, 0] * w_nt <= 0.0
     ratio = before[5] / before[4] if before[4] > 0.0 else 0.0

@@ -23,10 +23,8 @@ def ratio_under(normal, gap, slips, strays, w, law, laws, number, before, let_go
     As `contact.ratio_under`.
     """
     if set_valued(law):
-        ratio, past, status, stuck = ratio_over_step(
-            normal, gap, slips, strays, w, law, laws, number, before, let_go, step
-        )
-        return ratio, past, before[3], status, stuck
+        found = ratio_over_step(normal, gap, slips, strays, w, law, laws, number, before, let_go, step)
+        return found[0], found[1], before[3], found[2], found[3]
     ratio, past, states = ratio_with_state(normal, slips, w, law, laws, number, before, step)
     moved = (
         slips[0] + (w[3] - w[4] * ratio[0] - w[5] * ratio[1]) * normal,
@@ -125,7 +123,6 @@ def next_on_way_of_run(touch, gap, slips, strays, w, law, laws, number, before, 
         return (0.0, 0.0), (fresh, fresh if law == at.LUGRE else 0.0), 0.0
     if law == at.COULOMB or is_prescribed(law, w):
         return (0.0, 0.0), before[3], 1.0 if touch[1] == STICKING else 0.0
-    _, past, states, _, stuck = ratio_under(
-        touch[0], gap, slips, strays, w, law, laws, number, before, let_go > 0.5, step
-    )
+    late = let_go > 0.5
+    _, past, states, _, stuck = ratio_under(touch[0], gap, slips, strays, w, law, laws, number, before, late, step)
     return past, states, stuck
