@@ -209,7 +209,7 @@ def solve_contacts(gaps, slips, strayed, w, before, h, guess=None, let_go=()):
             if kind == "way":
                 if normal <= 0:
                     break
-                status = on_its_way(LAWS, before[i], normal, slip, strayed[i], own, h, i in let_go)[3]
+                status = on_its_way(LAWS, before[i], normal, gap, slip, strayed[i], own, h, i in let_go)[3]
                 outcome.append((status, normal, tangential))
                 continue
             turn = turned(gap, slip, own, before[i], i in let_go)
@@ -255,9 +255,8 @@ def forces_of(combination, gaps, slips, strayed, w, before, h, let_go):
             if combination[i] == "way":
                 if gap >= 0 or forces[2 * i] <= 0:
                     return None
-                found[i] = on_its_way(LAWS, before[i], forces[2 * i], slip, strayed[i], w[pair, pair], h, i in let_go)[
-                    0
-                ]
+                own = w[pair, pair]
+                found[i] = on_its_way(LAWS, before[i], forces[2 * i], gap, slip, strayed[i], own, h, i in let_go)[0]
                 continue
             turn = turned(gap, slip, w[pair, pair], before[i], i in let_go)
             if not turn:
@@ -550,7 +549,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             if status != SEPARATED and not isinstance(one.law, st.Coulomb):
                 free = slips[i] + rows[2 * i + 1] @ (q_new - trial) - w[1] @ [normal, -tangential]
                 _, one.past_now, one.state_now, _, one.stuck_now = on_its_way(
-                    LAWS, one, normal, free, strayed[i], w, h, i in let_go
+                    LAWS, one, normal, gap - w[0] @ [normal, -tangential], free, strayed[i], w, h, i in let_go
                 )
             closed = one.closed
             if one.status != SEPARATED and status == SEPARATED:

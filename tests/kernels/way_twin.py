@@ -16,18 +16,21 @@ import stridula as st
 SEPARATED, STICKING, SLIDING = 0, 1, 2
 
 
-def on_its_way(laws, before, normal, slip, strayed, own, h, let_go):
+def on_its_way(laws, before, normal, gap, slip, strayed, own, h, let_go):
     """Return ratio, past part for the next step, state, status and the share of the step in which it sticks.
 
     `laws` has the functions `curve`, `held_up_to`, `state_after` and `ratio_with_state`; `own` is the compliance for
-    ``(N, -T)``; `slip` the slip without forces of this contact.
+    ``(N, -T)``; `gap` and `slip` those without forces of this contact.
     """
     pull, moved, last = own[1, 1] * normal, slip + own[1, 0] * normal, before.last_slip
     law, begun, drive = before.law, 0.5 * (last + moved), moved - last
     if not laws.set_valued(law):
         return _with_state(laws, before, begun, drive, pull, moved, h)
     held = laws.held_up_to(law, before.status == STICKING and not let_go)
-    needed = (moved + strayed) / pull
+    driven = (moved + strayed) / pull
+    # Whether it sticks, and when it breaks, follows from the forces with which it would stick.
+    pressed, pushed = np.linalg.solve(own, [-gap, -slip - strayed])
+    needed = driven if before.status == SLIDING or pressed <= 0 else -pushed / pressed
     way = SimpleNamespace(laws=laws, law=law, pull=pull, h=h)
     if before.status == STICKING and last == 0.0:
         grows = needed - (before.tangential / before.normal if before.normal else needed)
@@ -40,20 +43,20 @@ def on_its_way(laws, before, normal, slip, strayed, own, h, let_go):
             slides = sense * laws.curve(law, 0.0)
             before_now = _moments(0.0, breaks, *(earlier + grows * breaks * np.array([0.0, 0.5, 1.0])))[1]
             before_now += _moments(breaks, 1.0, slides, slides, slides)[1]
-            u = pull * ((needed / 2 - grows / 6) - before_now)
-            more, rest, sticks = _slide(way, u, 0.0, (pull * needed, pull * grows), sense)
+            u = pull * ((needed / 2 - grows / 6) - before_now + (1 - breaks**2) / 2 * (driven - needed))
+            more, rest, sticks = _slide(way, u, 0.0, (pull * driven, pull * grows), sense)
             return before_now + more, rest, before.state, STICKING if sticks else SLIDING, sticks
         sense = np.sign(needed + grows) or -1.0
         breaks = 0.0 if abs(needed) >= held else np.clip((sense * held - needed) / grows, 0.0, 1.0)
         later, past = _moments(0.0, breaks, *(needed + grows * breaks * np.array([0.0, 0.5, 1.0])))
-        more, rest, sticks = _slide(way, 0.0, breaks, (pull * needed, pull * grows), sense)
+        more, rest, sticks = _slide(way, 0.0, breaks, (pull * driven, pull * grows), sense)
         ratio = needed / 2 - grows / 6 + later + more
         return ratio, past + rest, before.state, STICKING if sticks else SLIDING, breaks + sticks
     if before.status == STICKING:
         short = 2 * (needed - before.past)
         if abs(short) <= held and not let_go:
             return needed, needed / 2, before.state, STICKING, 1.0
-        more, rest, sticks = _slide(way, 0.0, 0.0, (pull * short, 0.0), np.sign(short))
+        more, rest, sticks = _slide(way, 0.0, 0.0, (2 * pull * (driven - before.past), 0.0), np.sign(short))
         return before.past + more, rest, before.state, STICKING if sticks else SLIDING, sticks
     past = before.past
     if before.status == SEPARATED:

@@ -87,7 +87,7 @@ def next_of(i, touch, moved, w, away, before, contacts, step, run, runs, zero):
     if law == at.COULOMB:
         return zero, before[3], zero
     let_go = held(contacts.now, i * at.IN_STEP + at.LET_GO, run, zero)
-    return next_on_way((touch[0], touch[2]), moved[1], away, w, law, laws, number, before, let_go, step)
+    return next_on_way((touch[0], touch[2]), moved[0], moved[1], away, w, law, laws, number, before, let_go, step)
 
 
 @numba.njit(**OPTIONS)

@@ -43,13 +43,13 @@ def solve_contact(gap, slip, strayed, w, law, laws, i, before, let_go, step):
 
 
 @numba.njit(**STRICT)
-def ratio_under(normal, slip, strayed, w, law, laws, i, before, let_go, step):
+def ratio_under(normal, gap, slip, strayed, w, law, laws, i, before, let_go, step):
     """Return the ratio of forces over a step under a normal force, its past part, new state, status and stuck share.
 
     Under a law with internal state nothing sticks, however slowly it creeps. See `slipping`.
     """
     if set_valued(law):
-        ratio, past, status, stuck = ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step)
+        ratio, past, status, stuck = ratio_over_step(normal, gap, slip, strayed, w, law, laws, i, before, let_go, step)
         return ratio, past, before[3], status, stuck
     ratio, past, state = ratio_with_state(normal, slip, w, law, laws, i, before, step)
     moved = slip + (w[2] - ratio * w[3]) * normal
@@ -66,7 +66,10 @@ def slide_on_its_way(gap, slip, strayed, w, law, laws, i, before, let_go, step):
     w_nn, w_nt = w[0], w[1]
     if set_valued(law) and before[0] != SLIDING:
         pressed, needed = sticking_forces(gap, slip + strayed, w)
-        if pressed > 0.0 and ratio_under(pressed, slip, strayed, w, law, laws, i, before, let_go, step)[3] == STICKING:
+        sticks = False
+        if pressed > 0.0:
+            sticks = ratio_under(pressed, gap, slip, strayed, w, law, laws, i, before, let_go, step)[3] == STICKING
+        if sticks:
             sense = 1.0 if needed >= 0.0 else -1.0
             return pressed, needed, STICKING, w_nn - sense * laws[i, 0] * w_nt <= 0.0
     ratio = before[5] / before[4] if before[4] > 0.0 else 0.0
@@ -75,7 +78,7 @@ def slide_on_its_way(gap, slip, strayed, w, law, laws, i, before, let_go, step):
     status, last, error_before = SLIDING, 0.0, 0.0
     low, high, below, above, settled = 0.0, math.inf, ratio, ratio, False
     for trial in range(TRIALS):
-        ratio, _, _, status, _ = ratio_under(normal, slip, strayed, w, law, laws, i, before, let_go, step)
+        ratio, _, _, status, _ = ratio_under(normal, gap, slip, strayed, w, law, laws, i, before, let_go, step)
         free = w_nn - ratio * w_nt
         if free <= 0.0:
             pressed, needed = sticking_forces(gap, slip + strayed, w)

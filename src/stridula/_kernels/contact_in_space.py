@@ -7,22 +7,7 @@ import numba
 from . import layout as at
 from .contact import PATIENCE, ROUND_OFF, SLIDING, STICKING, TRIALS, velocity_at
 from .friction import STRICT, set_valued, sliding_ratio, sticking_speed
-from .slipping_in_space import BEYOND, plus, ratio_over_step, ratio_with_state, size_of, undone_by
-
-
-@numba.njit(**STRICT)
-def sticking_forces(gap, slips, w):
-    """Return the forces that close `gap` and undo both slips (5b), beyond all bounds if no force moves a tangent."""
-    tangents = (
-        w[4] - w[3] * w[1] / w[0],
-        w[5] - w[3] * w[2] / w[0],
-        w[7] - w[6] * w[1] / w[0],
-        w[8] - w[6] * w[2] / w[0],
-    )
-    first, second = undone_by(tangents, (slips[0] - w[3] * gap / w[0], slips[1] - w[6] * gap / w[0]))
-    if max(abs(first), abs(second)) >= 0.5 * BEYOND:
-        return -gap / w[0], first, second
-    return (w[1] * first + w[2] * second - gap) / w[0], first, second
+from .slipping_in_space import plus, ratio_over_step, ratio_with_state, size_of, sticking_forces
 
 
 @numba.njit(**STRICT)
@@ -32,14 +17,14 @@ def is_prescribed(law, w):
 
 
 @numba.njit(**STRICT)
-def ratio_under(normal, slips, strays, w, law, laws, number, before, let_go, step):
+def ratio_under(normal, gap, slips, strays, w, law, laws, number, before, let_go, step):
     """Return ratios over a step under a normal force, past parts, new states, status and share of stick.
 
     As `contact.ratio_under`.
     """
     if set_valued(law):
-        ratio, past, status, stuck = ratio_over_step(normal, slips, strays, w, law, laws, number, before, let_go, step)
-        return ratio, past, before[3], status, stuck
+        found = ratio_over_step(normal, gap, slips, strays, w, law, laws, number, before, let_go, step)
+        return found[0], found[1], before[3], found[2], found[3]
     ratio, past, states = ratio_with_state(normal, slips, w, law, laws, number, before, step)
     moved = (
         slips[0] + (w[3] - w[4] * ratio[0] - w[5] * ratio[1]) * normal,
@@ -82,7 +67,7 @@ def slide_on_its_way(gap, slips, strays, w, law, laws, number, before, let_go, s
     if set_valued(law) and before[0] != SLIDING:
         pressed, first, second = sticking_forces(gap, plus(slips, 1.0, strays), w)
         if pressed > 0.0:
-            tried = ratio_under(pressed, slips, strays, w, law, laws, number, before, let_go, step)
+            tried = ratio_under(pressed, gap, slips, strays, w, law, laws, number, before, let_go, step)
             if tried[3] == STICKING:
                 most, pulled = laws[number, 0], math.hypot(first, second)
                 lifted = most * (first * w[1] + second * w[2]) / pulled if pulled > 0.0 else 0.0
@@ -94,7 +79,7 @@ def slide_on_its_way(gap, slips, strays, w, law, laws, number, before, let_go, s
     status, last, error_before = SLIDING, 0.0, 0.0
     low, high, below, above, settled = 0.0, math.inf, ratio, ratio, False
     for trial in range(TRIALS):
-        ratio, _, _, status, _ = ratio_under(normal, slips, strays, w, law, laws, number, before, let_go, step)
+        ratio, _, _, status, _ = ratio_under(normal, gap, slips, strays, w, law, laws, number, before, let_go, step)
         free = w[0] - ratio[0] * w[1] - ratio[1] * w[2]
         if free <= 0.0:
             pressed, first, second = sticking_forces(gap, plus(slips, 1.0, strays), w)
@@ -128,7 +113,7 @@ def slide_on_its_way(gap, slips, strays, w, law, laws, number, before, let_go, s
 
 
 @numba.njit(**STRICT)
-def next_on_way_of_run(touch, slips, strays, w, law, laws, number, before, let_go, step):
+def next_on_way_of_run(touch, gap, slips, strays, w, law, laws, number, before, let_go, step):
     """Return past parts of the ratios for the next step, internal states and the share of stick of this step.
 
     `touch` are normal force and status. Where bodies are apart, states are those of new contacts.
@@ -138,5 +123,6 @@ def next_on_way_of_run(touch, slips, strays, w, law, laws, number, before, let_g
         return (0.0, 0.0), (fresh, fresh if law == at.LUGRE else 0.0), 0.0
     if law == at.COULOMB or is_prescribed(law, w):
         return (0.0, 0.0), before[3], 1.0 if touch[1] == STICKING else 0.0
-    _, past, states, _, stuck = ratio_under(touch[0], slips, strays, w, law, laws, number, before, let_go > 0.5, step)
+    late = let_go > 0.5
+    _, past, states, _, stuck = ratio_under(touch[0], gap, slips, strays, w, law, laws, number, before, late, step)
     return past, states, stuck

@@ -142,6 +142,7 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
             add(state.energies, at.DRIVE_WORK, run, driven, zero)
         past, states, stuck = next_in_space(
             (normal, status),
+            moved[0],
             free,
             strays,
             softened(whole, give),

@@ -126,43 +126,55 @@ def slide_through(slip, begin, drive, pull, sense, law, laws, i, step):
 
 @numba.njit(inline="always", **STRICT)
 def broken_before(earlier, grows, held, sliding, sense):
-    """Return the past part of the ratio, and the slip for a pull of one, of a stick that broke within the last step.
+    """Return the past part of the ratio of a stick that broke within the last step, and its slip for a pull of one.
 
-    The ratio grew from `earlier` until it was `held` and has been that of `sliding` since.
+    The ratio grew from `earlier` until it was `held` and has been that of `sliding` since. The last value is the share
+    of the last step that slid, weighted.
     """
     broke = min(max((sense * held - earlier) / grows, 0.0), 1.0) if grows != 0.0 else 0.0
     stuck, left = 0.5 * broke * broke, 0.5 * (1.0 - broke * broke)
     past = stuck * earlier + grows * broke**3 / 3.0 + left * sense * sliding
-    return past, grows * (1.0 - broke**3) / 3.0 + left * (earlier - sense * sliding)
+    return past, grows * (1.0 - broke**3) / 3.0 + left * (earlier - sense * sliding), left
+
+
+@numba.njit(inline="always", **STRICT)
+def ratio_of_stick(gap, missed, w, otherwise):
+    """Return the ratio of the forces that close the gap and undo a slip, another one if they pull."""
+    pressed, held = w[1] * missed - w[3] * gap, w[0] * missed - w[2] * gap
+    return held / pressed if pressed * (w[0] * w[3] - w[1] * w[2]) > 0.0 else otherwise
 
 
 @numba.njit(**STRICT)
-def ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step):
+def ratio_over_step(normal, gap, slip, strayed, w, law, laws, i, before, let_go, step):
     """Return the ratio of forces over a step under a set-valued law, its past part, status and share of stick.
 
-    `normal` is the normal force, `slip` the slip without the forces of this contact; other arguments as in
-    `contact.solve_contact`. A contact that sticks does so throughout the step.
+    `normal` is the normal force, `gap` and `slip` those without the forces of this contact; other arguments as in
+    `contact.solve_contact`. A contact that sticks does so throughout the step. Whether it does, and when it breaks,
+    follows from the forces with which it would stick; what it is driven by after that from its normal force.
     """
     was, last, past = before[0], before[1], before[6]
     pull, moved = w[3] * normal, slip + w[2] * normal
     held = holding_ratio(law, laws, i, was == STICKING and not let_go)
-    needed = (moved + strayed) / pull if pull > 0.0 else math.copysign(math.inf, moved + strayed)
+    driven = (moved + strayed) / pull if pull > 0.0 else math.copysign(math.inf, moved + strayed)
+    needed = driven if was == SLIDING else ratio_of_stick(gap, slip + strayed, w, driven)
     if was == STICKING and last == 0.0:
         # At rest for a step or more: the force grows through the step as it did in the last one.
         earlier = before[5] / before[4] if before[4] > 0.0 else needed
         grows = needed - earlier
         if not let_go and abs(needed) <= held and abs(needed + grows) <= held:
             return needed, 0.5 * needed + grows / 3.0, STICKING, 1.0
+        drive = (pull * driven, pull * grows)
         if abs(needed) > held:
             sense = 1.0 if needed > 0.0 else -1.0
-            past, begun = broken_before(earlier, grows, held, sense * ratio_of(0.0, sense, law, laws, i, step), sense)
-            drive = (pull * needed, pull * grows)
+            slides = sense * ratio_of(0.0, sense, law, laws, i, step)
+            past, begun, left = broken_before(earlier, grows, held, slides, sense)
+            begun += left * (driven - needed)
             more, rest, stuck = slide_through(pull * begun, 0.0, drive, pull, sense, law, laws, i, step)
             return past + more, rest, STOPPED if stuck > 0.0 else SLIDING, stuck
         sense = 1.0 if needed + grows > 0.0 else -1.0
         broke = min(max((sense * held - needed) / grows, 0.0), 1.0) if abs(needed) < held else 0.0
         first, less = moments(0.0, broke, needed, needed + 0.5 * broke * grows, needed + broke * grows)
-        more, rest, stuck = slide_through(0.0, broke, (pull * needed, pull * grows), pull, sense, law, laws, i, step)
+        more, rest, stuck = slide_through(0.0, broke, drive, pull, sense, law, laws, i, step)
         ratio = 0.5 * needed - grows / 6.0 + first + more
         return ratio, less + rest, STOPPED if stuck > 0.0 else SLIDING, broke + stuck
     if was == STICKING:
@@ -171,7 +183,8 @@ def ratio_over_step(normal, slip, strayed, w, law, laws, i, before, let_go, step
         if not let_go and abs(short) <= held:
             return needed, 0.5 * needed, STICKING, 1.0
         sense = 1.0 if short > 0.0 else -1.0
-        more, rest, stuck = slide_through(0.0, 0.0, (pull * short, 0.0), pull, sense, law, laws, i, step)
+        drive = (2.0 * pull * (driven - past), 0.0)
+        more, rest, stuck = slide_through(0.0, 0.0, drive, pull, sense, law, laws, i, step)
         return past + more, rest, STOPPED if stuck > 0.0 else SLIDING, stuck
     begun = 0.5 * (last + moved)
     if was != SLIDING:

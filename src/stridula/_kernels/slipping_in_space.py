@@ -261,8 +261,33 @@ def slide_through(slip, begin, drive, pull, way, law, laws, i, step):
 
 
 @numba.njit(**STRICT)
-def after_break(earlier, needed, grows, held, drive, pull, law, laws, i, step):
+def ratio_of_stick(gap, missed, w, otherwise):
+    """Return the ratios of the forces that close the gap and undo both slips (5b), others if they pull."""
+    pressed, first, second = sticking_forces(gap, missed, w)
+    if not pressed > 0.0 or max(abs(first), abs(second)) >= 0.5 * BEYOND:
+        return otherwise
+    return first / pressed, second / pressed
+
+
+@numba.njit(**STRICT)
+def sticking_forces(gap, slips, w):
+    """Return the forces that close `gap` and undo both slips (5b), beyond all bounds if no force moves a tangent."""
+    tangents = (
+        w[4] - w[3] * w[1] / w[0],
+        w[5] - w[3] * w[2] / w[0],
+        w[7] - w[6] * w[1] / w[0],
+        w[8] - w[6] * w[2] / w[0],
+    )
+    first, second = undone_by(tangents, (slips[0] - w[3] * gap / w[0], slips[1] - w[6] * gap / w[0]))
+    if max(abs(first), abs(second)) >= 0.5 * BEYOND:
+        return -gap / w[0], first, second
+    return (w[1] * first + w[2] * second - gap) / w[0], first, second
+
+
+@numba.njit(**STRICT)
+def after_break(earlier, needed, driven, held, drive, pull, law, laws, i, step):
     """Slide on from a stick that broke within the last step; results as those of `ratio_over_step`."""
+    grows = plus(needed, -1.0, earlier)
     broke = breaks_at(earlier, grows, held)
     sliding = sliding_ratio(law, laws, i, 0.0)
     way = direction_of(plus(earlier, broke, grows) if broke > 0.0 else needed, (1.0, 0.0))
@@ -272,24 +297,26 @@ def after_break(earlier, needed, grows, held, drive, pull, law, laws, i, step):
         stuck * earlier[0] + grows[0] * third + left * friction[0],
         stuck * earlier[1] + grows[1] * third + left * friction[1],
     )
-    begun = times(pull, plus(earlier, -1.0, friction))
-    begun = (1.0 / 3.0 - third) * drive[1][0] + left * begun[0], (1.0 / 3.0 - third) * drive[1][1] + left * begun[1]
+    # Ratios without which it would have kept still, then those of the change of its normal force.
+    free = plus(plus(earlier, -1.0, friction), 1.0, plus(driven, -1.0, needed))
+    begun = plus(((1.0 / 3.0 - third) * drive[1][0], (1.0 / 3.0 - third) * drive[1][1]), left, times(pull, free))
     more, rest, stuck = slide_through(begun, 0.0, drive, pull, way, law, laws, i, step)
     return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
 
 
 @numba.njit(**STRICT)
-def ratio_over_step(normal, slips, strays, w, law, laws, i, before, let_go, step):
+def ratio_over_step(normal, gap, slips, strays, w, law, laws, i, before, let_go, step):
     """Return the ratios of forces over a step under a set-valued law, past parts, status and share of stick.
 
-    As `slipping.ratio_over_step`; `slips` are those without the forces of this contact.
+    As `slipping.ratio_over_step`; `gap` and `slips` are those without the forces of this contact.
     """
     was, last, past = before[0], before[1], before[7]
     pull = normal * w[4], normal * w[5], normal * w[7], normal * w[8]
     moved = slips[0] + w[3] * normal, slips[1] + w[6] * normal
     held = holding_ratio(law, laws, i, was == STICKING and not let_go)
     missed = moved[0] + strays[0], moved[1] + strays[1]
-    needed = undone_by(pull, missed)
+    driven = undone_by(pull, missed)
+    needed = driven if was == SLIDING else ratio_of_stick(gap, plus(slips, 1.0, strays), w, driven)
     asked = size_of(needed)
     if was == STICKING and last[0] == 0.0 and last[1] == 0.0:
         # At rest for a step or more: the force grows through the step as it did in the last one.
@@ -297,11 +324,11 @@ def ratio_over_step(normal, slips, strays, w, law, laws, i, before, let_go, step
         earlier = (share * before[5][0], share * before[5][1]) if share > 0.0 else needed
         grows = plus(needed, -1.0, earlier)
         beyond = plus(needed, 1.0, grows)
-        drive = missed, plus(missed, -1.0, times(pull, earlier)) if asked < BEYOND else (0.0, 0.0)
-        if asked > held:
-            return after_break(earlier, needed, grows, held, drive, pull, law, laws, i, step)
-        if not let_go and size_of(beyond) <= held:
+        if not let_go and asked <= held and size_of(beyond) <= held:
             return needed, (0.5 * needed[0] + grows[0] / 3.0, 0.5 * needed[1] + grows[1] / 3.0), STICKING, 1.0
+        drive = missed, times(pull, grows) if asked < BEYOND else (0.0, 0.0)
+        if asked > held:
+            return after_break(earlier, needed, driven, held, drive, pull, law, laws, i, step)
         broke = breaks_at(needed, grows, held)
         at_break = plus(needed, broke, grows)
         way = direction_of(at_break, direction_of(beyond, (1.0, 0.0)))
@@ -313,8 +340,7 @@ def ratio_over_step(normal, slips, strays, w, law, laws, i, before, let_go, step
     rests = needed, (0.5 * needed[0], 0.5 * needed[1]), STICKING, 1.0
     if was == STICKING:
         # It came to rest within the last step.
-        short = plus(needed, -1.0, past)
-        if not let_go and 2.0 * size_of(short) <= held:
+        if not let_go and 2.0 * size_of(plus(needed, -1.0, past)) <= held:
             return rests
         drive = plus(missed, -1.0, times(pull, past))
         drive = 2.0 * drive[0], 2.0 * drive[1]

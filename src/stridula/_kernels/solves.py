@@ -17,12 +17,12 @@ def solve(gap, slip, strayed, w, law, laws, run, before, let_go, step):
     return solve_one_run(gap, slip, strayed, w, law, laws, run, before, let_go, step)
 
 
-def next_on_way(touch, slip, strayed, w, law, laws, run, before, let_go, step):
+def next_on_way(touch, gap, slip, strayed, w, law, laws, run, before, let_go, step):
     """Return the past parts of the ratios for the next step, the internal states, and shares of stick of this step.
 
     `touch` are normal force and status. Where bodies are apart, states are those of new contacts.
     """
-    return next_on_way_of_run(touch, slip, strayed, w, law, laws, run, before, let_go, step)
+    return next_on_way_of_run(touch, gap, slip, strayed, w, law, laws, run, before, let_go, step)
 
 
 @numba.njit(inline="always", **STRICT)
@@ -70,13 +70,13 @@ def solve_one_run(gap, slip, strayed, w, law, laws, run, before, let_go, step):
 
 
 @numba.njit(**STRICT)
-def next_on_way_of_run(touch, slip, strayed, w, law, laws, run, before, let_go, step):
+def next_on_way_of_run(touch, gap, slip, strayed, w, law, laws, run, before, let_go, step):
     """Do `next_on_way` for one run."""
     if touch[1] < 0.5:
         return 0.0, laws[run, at.LAW_PARAMETERS - 1], 0.0
     if law == at.COULOMB or (set_valued(law) and w[3] == 0.0):
         return 0.0, before[3], 1.0 if touch[1] == STICKING else 0.0
-    _, past, state, _, stuck = ratio_under(touch[0], slip, strayed, w, law, laws, run, before, let_go > 0.5, step)
+    _, past, state, _, stuck = ratio_under(touch[0], gap, slip, strayed, w, law, laws, run, before, let_go > 0.5, step)
     return past, state, stuck
 
 
@@ -118,7 +118,7 @@ def solve_runs(gap, slip, strayed, w, law, laws, run, before, let_go, step):
 
 
 @numba.njit(**STRICT)
-def next_on_way_of_runs(touch, slip, strayed, w, law, laws, run, before, let_go, step):
+def next_on_way_of_runs(touch, gap, slip, strayed, w, law, laws, run, before, let_go, step):
     """Do `next_on_way` for vectors of runs."""
     past, state, stuck = spread(0.0), before[3], spread(0.0)
     if law == at.COULOMB:
@@ -126,6 +126,7 @@ def next_on_way_of_runs(touch, slip, strayed, w, law, laws, run, before, let_go,
     for i in range(LANES):
         one = next_on_way_of_run(
             (lane(touch[0], i), lane(touch[1], i)),
+            lane(gap, i),
             lane(slip, i),
             lane(strayed, i),
             (lane(w[0], i), lane(w[1], i), lane(w[2], i), lane(w[3], i)),
@@ -152,11 +153,11 @@ def _overload_solve(gap, slip, strayed, w, law, laws, run, before, let_go, step)
 
 
 @overload(next_on_way)
-def _overload_next_on_way(touch, slip, strayed, w, law, laws, run, before, let_go, step):
+def _overload_next_on_way(touch, gap, slip, strayed, w, law, laws, run, before, let_go, step):
     chosen = next_on_way_of_runs if slip is VECTOR else next_on_way_of_run
 
-    def implementation(touch, slip, strayed, w, law, laws, run, before, let_go, step):
-        return chosen(touch, slip, strayed, w, law, laws, run, before, let_go, step)
+    def implementation(touch, gap, slip, strayed, w, law, laws, run, before, let_go, step):
+        return chosen(touch, gap, slip, strayed, w, law, laws, run, before, let_go, step)
 
     return implementation
 

@@ -467,18 +467,19 @@ def free_in_space(contacts, sizes, run, zero):
             hold(now, here + at.IN_STEP + at.FREE_SLIP, run, swerve)
 
 
-def next_in_space(touch, slips, strays, w, law, laws, run, before, let_go, step):
+def next_in_space(touch, gap, slips, strays, w, law, laws, run, before, let_go, step):
     """Return past parts of the ratios, internal states and share of stick: `contact_in_space.next_on_way_of_run`."""
-    return next_on_way_of_run(touch, slips, strays, w, law, laws, run, before, let_go, step)
+    return next_on_way_of_run(touch, gap, slips, strays, w, law, laws, run, before, let_go, step)
 
 
 @numba.njit(**STRICT)
-def next_of_runs_in_space(touch, slips, strays, w, law, laws, run, before, let_go, step):
+def next_of_runs_in_space(touch, gap, slips, strays, w, law, laws, run, before, let_go, step):
     """Do `next_in_space` for vectors of runs."""
     past, other_past, state, other_state, stuck = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     for i in range(LANES):
         one = next_on_way_of_run(
             lane_of_pair(touch, i),
+            lane(gap, i),
             lane_of_pair(slips, i),
             lane_of_pair(strays, i),
             lanes_of_compliance(w, i),
@@ -496,10 +497,10 @@ def next_of_runs_in_space(touch, slips, strays, w, law, laws, run, before, let_g
 
 
 @overload(next_in_space)
-def _overload_next_in_space(touch, slips, strays, w, law, laws, run, before, let_go, step):
+def _overload_next_in_space(touch, gap, slips, strays, w, law, laws, run, before, let_go, step):
     chosen = next_of_runs_in_space if slips[0] is VECTOR else next_on_way_of_run
 
-    def implementation(touch, slips, strays, w, law, laws, run, before, let_go, step):
-        return chosen(touch, slips, strays, w, law, laws, run, before, let_go, step)
+    def implementation(touch, gap, slips, strays, w, law, laws, run, before, let_go, step):
+        return chosen(touch, gap, slips, strays, w, law, laws, run, before, let_go, step)
 
     return implementation

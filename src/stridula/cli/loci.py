@@ -24,8 +24,8 @@ def print_loci(
     **options: Any,
 ) -> None:
     """Print the parameter values at which stability changes, and optionally draw or write the modes."""
-    check_record(out)
     check_outputs(out, plot)
+    check_record(out)
     key, numbers, unit = numbers_of(vary)
     about = {"units": unit, "overrides": overrides, **options}
     loci = root_loci(name, key, numbers, highest=highest, **about)

@@ -42,8 +42,8 @@ def run_scenario(
     Stopped
         On Ctrl-C, or if the run failed, after the samples recorded so far are written.
     """
-    check_record(out)
     check_outputs(out, plot)
+    check_record(out)
     with doubts_on_the_card():
         scenario = load_scenario(name, overrides)
     if wav is not None:

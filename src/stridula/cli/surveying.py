@@ -49,8 +49,8 @@ def survey_scenario(
     Stopped
         On Ctrl-C, or if other machines fail; finished parts are kept.
     """
-    check_record(out)
     check_outputs(out, plot)
+    check_record(out)
     if table is not None:
         _check_table(table, out, plot)
     if plot is not None:

@@ -46,8 +46,8 @@ def sweep_scenario(
     Stopped
         On Ctrl-C, or if other machines fail; finished parts are kept.
     """
-    check_record(out)
     check_outputs(out, plot)
+    check_record(out)
     asked = asked_for(list(measures))
     if plot is not None:
         _check_plot(points, [measure.name for measure in asked.measures])

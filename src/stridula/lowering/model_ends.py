@@ -27,7 +27,8 @@ MOST_MODES = 300
 
 def notes_of(system: System, arrays: Assembly, duration: float) -> str:
     """Return the notes on a system that is simulated for a duration [s], separated by semicolons."""
-    return "; ".join([*_bodies(system), *_frictionless(system), *_near_cutoff(system, arrays, duration)])
+    ends = [*_bodies(system), *_at_rest(system), *_frictionless(system), *_near_cutoff(system, arrays, duration)]
+    return "; ".join(ends)
 
 
 def _bodies(system: System) -> Iterator[str]:
@@ -55,6 +56,13 @@ def _near_critical(name: str, body: Any, turning: Any) -> Iterator[str]:
             f"{name}: turns at {100.0 * share:.0f} % of {critical[lowest]:.4g} rad/s, critical for waves of {order}; "
             "centrifugal stiffening is left out"
         )
+
+
+def _at_rest(system: System) -> Iterator[str]:
+    """Yield a note on meshes that turn under a face, whose vibration is described in a frame at rest."""
+    turning = [system.body_name(face.track) for face in system.faces if getattr(face, "turning", None) is not None]
+    if turning:
+        yield f"turning meshes whose waves are not carried round: {_once(turning)}"
 
 
 def _frictionless(system: System) -> Iterator[str]:
