@@ -60,7 +60,8 @@ def _near_critical(name: str, body: Any, turning: Any) -> Iterator[str]:
 
 def _at_rest(system: System) -> Iterator[str]:
     """Yield a note on meshes that turn under a face, whose vibration is described in a frame at rest."""
-    turning = [system.body_name(face.track) for face in system.faces if getattr(face, "turning", None) is not None]
+    faces: Iterable[Any] = system.faces
+    turning = [system.body_name(face.track) for face in faces if getattr(face, "turning", None) is not None]
     if turning:
         yield f"turning meshes whose waves are not carried round: {_once(turning)}"
 
