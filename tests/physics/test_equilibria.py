@@ -55,7 +55,8 @@ def test_points_are_closed_again():
 def test_every_unique_equilibrium_of_blocks_is_found(spatial, kind):
     """Forces and growth are those of the set found by hand."""
     unique = 0
-    for seed in range(25):
+    # One of the last has a set of points, found first, that friction cannot hold.
+    for seed in [*range(25), *([100] if kind == "linear" else [])]:
         block = random_block(np.random.default_rng(seed), spatial, kind)
         by_hand, found = different(block), st.sliding_stability(block.system())
         if len(by_hand) != 1:

@@ -133,8 +133,9 @@ class _Search:
         if self.count > MOST_CONTACTS:
             return self._of_many()
         first = searched(self._margins, np.ones(self.count, dtype=bool))
-        if first is not None and self._is_unique():
-            return self._at(first)[0], ONE if self._persists(first) else NONE
+        # A set that friction cannot hold says nothing of those that slide.
+        if first is not None and self._persists(first) and self._is_unique():
+            return self._at(first)[0], ONE
         sets = self._distinct(list(all_sets(self._margins, self.count)))
         if not sets:
             return None, NONE
@@ -155,7 +156,7 @@ class _Search:
         if first is None:
             return None, NONE_FOUND
         persists = self._persists(first)
-        if self._is_unique():
+        if self._is_unique() and (persists or STICKING not in self._at(first)[0]):
             return self._at(first)[0], ONE if persists else NONE
         return self._at(first)[0], AT_LEAST_ONE if persists else NONE_FOUND
 
