@@ -95,7 +95,7 @@ def check_measures(names: Mapping[str, Any], printed: str) -> None:
     """Each complete stop ends, and between stops it squeals."""
     assert len(names["lengths"]) > 0
     assert (names["lengths"] > 0.0).all()
-    assert names["squeal"] > 1e3
+    assert names["loudest"] > 1e3
 
 
 def check_scenarios(names: Mapping[str, Any], printed: str) -> None:
