@@ -7,6 +7,8 @@ import pytest
 
 import stridula as st
 
+from .test_equilibrium_starts import growth, starting
+
 STIFFNESSES = [5e11, 1e12, 1e13]
 LOAD, FRICTION = 21.0, 0.3
 
@@ -42,3 +44,19 @@ def test_every_inequality_holds_where_the_face_lifts_off(stiffness):
     np.testing.assert_allclose(force, np.maximum(-slope * height, 0.0), rtol=1e-9, atol=1e-9 * force.max())
     assert force.sum() == pytest.approx(LOAD, rel=1e-9)
     np.testing.assert_allclose(np.linalg.norm(found.tangential_force, axis=1), FRICTION * force, rtol=1e-12)
+
+
+@pytest.mark.parametrize("stiffness", STIFFNESSES)
+def test_a_start_in_equilibrium_stays_and_growth_is_that_of_linear_theory(stiffness):
+    """At the default step; the most unstable modes have 10 to 42 kHz."""
+    system = pressed(stiffness)
+    forces = st.sliding_stability(system).normal_force.values
+    run = st.simulate(starting(system), 2e-4, probes=[], surface_rate="all")
+    away = np.abs(run.normal_force.values - forces).max()
+    assert away < 1e-9 * forces.max()
+    step = run.attrs["step"]
+    probe = st.Displacement(system.contacts[0].tip, "y")
+    known, seen, _ = growth(system, probe, step, 4e-4, 4, scheme=None, amplitude=1e-12)
+    assert known.real > 1000.0
+    assert seen.real == pytest.approx(known.real, rel=1e-3)
+    assert seen.imag == pytest.approx(known.imag, rel=1e-4)
