@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 import stridula as st
+from stridula.analysis.stability import stability_of
 from stridula.linear.complementarity import all_sets, searched
 
 from .blocks import Block, random_block
 from .sliding_systems import bar, rod
+from .test_equilibrium_starts import starting
 
 
 def different(block: Block) -> list:
@@ -87,6 +89,26 @@ def test_several_and_no_equilibria_are_said(kind):
             assert not found.sizes["mode"]
     assert words[1] == {"one"}
     assert words[0] == {"none"}
+
+
+@pytest.mark.parametrize(("spatial", "seed"), [(False, 91), (False, 158), (True, 124), (True, 174)])
+def test_forces_that_do_not_fit_their_indentations_are_no_equilibrium(spatial, seed):
+    """None of the sets of points with a power law balances, whichever is tried by hand."""
+    block = random_block(np.random.default_rng(seed), spatial, "power")
+    assert different(block) == []
+    found = st.sliding_stability(block.system())
+    assert (found.attrs["equilibrium"], found.attrs["equilibria"]) == ("jammed", "none")
+    first = st.sliding_stability(block.system(), status=["sliding", *["separated"] * (len(block.gap) - 1)])
+    assert first.attrs["violated"]
+
+
+def test_a_start_in_one_of_several_equilibria_is_noted():
+    noted = {}
+    for seed in (41, 42):
+        system = random_block(np.random.default_rng(seed), False, "linear").system()
+        noted[st.sliding_stability(system).attrs["equilibria"]] = st.simulate(starting(system), 1e-4).attrs["notes"]
+        assert stability_of(system)["equilibria"] in noted
+    assert noted == {"several": "start: several equilibria exist", "one": ""}
 
 
 def test_given_statuses_are_judged_with_friction():

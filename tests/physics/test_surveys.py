@@ -58,6 +58,7 @@ def test_a_point_that_does_not_grow_has_a_verdict_and_no_run(monkeypatch):
     found = st.squeal_survey(flutter, {"friction": [0.2, 0.5]})
     assert found.verdict.values.tolist() == ["stable", "stable"]
     assert found.unstable_modes.values.tolist() == [0.0, 0.0]
+    assert found.equilibria.values.tolist() == ["one", "one"]
     assert found.sizes["mode"] == 0
     assert st.squeal_survey("squeal", [{"friction": 1.5}]).verdict.item() == "held"
     jammed = st.squeal_survey("weak-pressure", [{"friction": 2.0}])

@@ -126,6 +126,7 @@ def test_untracked_modes_still_count():
     loci = st.root_loci(hoffmann_at, "friction", np.linspace(0.5, 1.0, 6), highest=1e-3)
     assert loci.sizes["mode"] == 0
     assert loci["unstable_modes"].values.tolist() == [0, 0, 0, 1, 1, 1]
+    assert loci["equilibria"].values.tolist() == ["one"] * 6
     (found,) = critical_values(loci, lambda low, high: st.critical_value(hoffmann_at, "friction", low, high))
     assert float(found["value"]) == pytest.approx(0.75, abs=1e-6)
 

@@ -148,6 +148,7 @@ def test_measures_of_the_system_need_no_run(monkeypatch):
 def test_stability_is_that_of_linear_theory_at_each_point():
     found = st.sweep("weak-pressure", st.Grid({"friction": [0.3, 1.2, 2.0]}), "stability")
     assert found["equilibrium"].values.tolist() == ["sliding", "sliding", "jammed"]
+    assert found["equilibria"].values.tolist() == ["one", "one", "one"]
     for friction in (0.3, 1.2):
         modes = st.sliding_stability(st.load_scenario("weak-pressure", {"friction": friction}).system)
         there = found.sel(friction=friction)

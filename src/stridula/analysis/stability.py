@@ -120,8 +120,8 @@ def stability_of(system: System, velocity: Velocity | None = None) -> dict[str, 
     -------
     dict
         ``growth_rate`` [1/s], NaN if no contact slides, since only sliding feeds a vibration; ``flutter_frequency``
-        [Hz] of the mode that grows fastest, NaN if none grows; ``unstable_modes``, NaN if jammed; ``equilibrium`` as
-        in `sliding_stability`.
+        [Hz] of the mode that grows fastest, NaN if none grows; ``unstable_modes``, NaN if jammed; ``equilibrium``
+        and ``equilibria`` as in `sliding_stability`.
     """
     structure = Structure(system)
     equilibrium = find_equilibrium(structure, given_velocity(velocity, structure))
@@ -132,6 +132,7 @@ def stability_of(system: System, velocity: Velocity | None = None) -> dict[str, 
             "flutter_frequency": nothing,
             "unstable_modes": nothing if equilibrium.kind == JAMMED else 0.0,
             "equilibrium": equilibrium.kind,
+            "equilibria": equilibrium.found,
         }
     found = exponents_alone(structure, vibration(structure, equilibrium))
     growing = found[found.real > round_off(structure)]
@@ -141,6 +142,7 @@ def stability_of(system: System, velocity: Velocity | None = None) -> dict[str, 
         "flutter_frequency": float(fastest.imag / (2.0 * np.pi)),
         "unstable_modes": float(growing.size),
         "equilibrium": equilibrium.kind,
+        "equilibria": equilibrium.found,
     }
 
 
@@ -195,7 +197,7 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
             data[name] = (("contact", "tangent"), both, attributes) if several else ("tangent", both[0], attributes)
     attributes = {"equilibrium": equilibrium.kind, "equilibria": equilibrium.found}
     attributes |= {"violated": "; ".join(equilibrium.violated), "round_off": round_off(structure)}
-    attributes["notes"] = notes_of(system, structure.arrays, AHEAD)
+    attributes["notes"] = "; ".join(notes_of(system, structure.arrays, AHEAD))
     return xr.Dataset(data, coordinates, attributes)
 
 

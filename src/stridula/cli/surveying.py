@@ -14,6 +14,7 @@ from rich.table import Table
 
 from ..checks import ArgumentError, counted
 from ..disk import check_writable, write
+from ..linear.equilibrium import AT_LEAST_ONE, SEVERAL
 from ..scenarios.read import read_tables
 from ..studies.fates import CHANGES, JOINS, LIVES, VIBRATES
 from ..studies.surveys import squeal_survey
@@ -149,4 +150,6 @@ def _verdicts(found: xr.Dataset) -> str:
     """Return the number of points with each verdict of linear theory."""
     kinds, counts = np.unique(found["verdict"].values.astype(str), return_counts=True)
     order = np.argsort(-counts, kind="stable")
-    return "linear theory: " + ", ".join(f"{kinds[k]} at {counted(int(counts[k]), 'point')}" for k in order)
+    verdicts = "linear theory: " + ", ".join(f"{kinds[k]} at {counted(int(counts[k]), 'point')}" for k in order)
+    others = {word: int((found["equilibria"] == word).sum()) for word in (SEVERAL, AT_LEAST_ONE)}
+    return verdicts + "".join(f"; {word} equilibria at {counted(n, 'point')}" for word, n in others.items() if n)

@@ -25,7 +25,7 @@ from ..system import System
 from ..version import __version__
 from .belief import Belief
 from .contact_solve import GaussSeidel
-from .equilibrium_start import in_equilibrium
+from .equilibrium_start import in_equilibrium, note_of_start
 from .marches import Chunk, Imposed, Impositions
 from .probe_records import ProbeRecords
 from .restart import imposed_at, motion_about, moved_on, state_of
@@ -223,6 +223,7 @@ class Run:
     def _attributes(self, interrupted: bool, scenario: dict[str, str]) -> dict[str, Any]:
         """Return the attributes of the record."""
         timing, last_step = self.timing, self._last_step
+        notes = notes_of(self.system, self.arrays, timing.samples * timing.interval)
         return {
             "title": self.title,
             "source": f"stridula {__version__}",
@@ -233,7 +234,7 @@ class Run:
             "steps_per_sample": timing.ratio,
             "sample_interval": timing.interval,
             "modes": self.arrays.mode_count,
-            "notes": notes_of(self.system, self.arrays, timing.samples * timing.interval),
+            "notes": "; ".join([*notes, *note_of_start(self.system)]),
             "contact_tolerance": self.solve.tolerance,
             "initial_energy": self.initial_energy,
             "largest_energy": self.belief.largest_energy,

@@ -9,6 +9,7 @@ import numpy as np
 import scipy.linalg
 
 from ..arrays import Array
+from ..contact.stiffness import indentation_under
 from .balance import (
     ROUND_OFF,
     Balance,
@@ -31,7 +32,8 @@ MOST_CONTACTS = 10
 def margins_of(structure: Structure, at: Balance) -> Array:
     """Return the force of each closed contact and the gap of each open one, relative, below zero where violated.
 
-    A contact that opens by a rigid motion has a gap in any case, one that such a motion closes has none.
+    A contact that opens by a rigid motion has a gap in any case, one that such a motion closes has none. Where no force
+    of a stiffness was found that fits its indentation, the misfit is a violation.
 
     Parameters
     ----------
@@ -45,7 +47,33 @@ def margins_of(structure: Structure, at: Balance) -> Array:
     for motion in _opening_motions(structure, at):
         gaps = np.where(np.abs(motion) > ROUND_OFF, motion, gaps)
     closed = np.array([one != SEPARATED for one in at.status])
-    return np.where(closed, at.normal_force / force, gaps) + ROUND_OFF
+    pushes = np.minimum(at.normal_force / force, -_misfit(structure, at) / _length(structure, at))
+    return np.where(closed, pushes, gaps) + ROUND_OFF
+
+
+def fits(structure: Structure, at: Balance) -> bool:
+    """Return whether every stiffness is indented as its force asks, where it pushes: whether forces were found.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    at : Balance
+        Balance of forces.
+    """
+    return bool((_misfit(structure, at) <= ROUND_OFF * _length(structure, at)).all())
+
+
+def _misfit(structure: Structure, at: Balance) -> Array:
+    """Return the distance [m] of closed contacts with a stiffness from the indentation under their force, if they push.
+
+    Zero for all others.
+    """
+    missed = np.zeros(len(at.status))
+    for k, contact in enumerate(structure.system.contacts):
+        if contact.yields is not None and at.status[k] != SEPARATED and at.normal_force[k] > 0.0:
+            missed[k] = abs(at.opening[k] + indentation_under(contact.yields, float(at.normal_force[k])))
+    return missed
 
 
 def _opening_motions(structure: Structure, at: Balance) -> tuple[Array, Array]:
@@ -125,7 +153,9 @@ def broken(structure: Structure, at: Balance) -> list[str]:
         return ["no forces balance"]
     margins, length = margins_of(structure, at), ROUND_OFF * _length(structure, at)
     for k in np.flatnonzero(~(margins >= 0.0)).tolist():
-        if at.status[k] != SEPARATED:
+        if at.status[k] != SEPARATED and at.normal_force[k] > 0.0:
+            words.append(f"the indentation of {names[k]} does not fit its force")
+        elif at.status[k] != SEPARATED:
             words.append(f"{names[k]} pulls with {-float(at.normal_force[k]):.3g} N")
         elif at.opening[k] < -length:
             words.append(f"{names[k]} is open {-float(at.opening[k]):.3g} m below the surface")

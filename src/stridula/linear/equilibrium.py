@@ -23,7 +23,7 @@ from .balance import (
     yielding_at,
 )
 from .complementarity import all_sets, searched
-from .conditions import beyond_friction, broken, is_leaving, margins_of, slides_on, stopping
+from .conditions import beyond_friction, broken, fits, is_leaving, margins_of, slides_on, stopping
 from .held_twice import held_twice
 from .structure import SEPARATED, SLIDING, STICKING, Structure
 
@@ -248,7 +248,7 @@ def _judged(
         one != SEPARATED and margin < 0.0 for one, margin in zip(status, margins_of(structure, at), strict=True)
     )
     digs_in = pulls and at.determinant != plain.determinant
-    if SLIDING in status and (digs_in or not slides_on(structure, status, share)):
+    if not fits(structure, at) or (SLIDING in status and (digs_in or not slides_on(structure, status, share))):
         kind = JAMMED
     elif pulls or is_leaving(structure, at) or _lifted(structure, status):
         kind = LIFTED_OFF

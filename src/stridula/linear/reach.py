@@ -48,8 +48,8 @@ class ModesAtRest:
     slip_velocity: Array
 
 
-def equilibrium_at_start(system: System, asked: InitialEquilibrium) -> tuple[str, tuple[str, ...]]:
-    """Return the kind of the equilibrium under the drives at the start, and the status of each contact.
+def equilibrium_at_start(system: System, asked: InitialEquilibrium) -> Equilibrium:
+    """Return the equilibrium under the drives at the start.
 
     Parameters
     ----------
@@ -70,8 +70,7 @@ def equilibrium_at_start(system: System, asked: InitialEquilibrium) -> tuple[str
             "drives", "press from the start, because runs begin in equilibrium", got="loads that rise later"
         )
     status = given_status(asked.status, system)
-    found = find_equilibrium(structure, given_velocity(asked.velocity, structure, status), status)
-    return found.kind, found.status
+    return find_equilibrium(structure, given_velocity(asked.velocity, structure, status), status)
 
 
 def modes_at_rest(system: System, asked: InitialEquilibrium) -> ModesAtRest:

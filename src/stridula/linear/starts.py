@@ -41,11 +41,14 @@ class Start:
         Modal positions and velocities.
     friction_state : ndarray, shape (contacts, 2)
         Internal states of the friction laws along both tangents; only bristles in space have a second one.
+    equilibria : str
+        Number of equilibria in words, as in `Equilibrium.found`.
     """
 
     position: Array
     velocity: Array
     friction_state: Array
+    equilibria: str
 
 
 def start_of(system: System, asked: InitialEquilibrium) -> Start:
@@ -77,7 +80,7 @@ def start_of(system: System, asked: InitialEquilibrium) -> Start:
     laws = [contact.friction for contact in system.contacts]
     slips, ways = at.slip_velocity.tolist(), structure.ways.tolist()
     friction_state = [_states(*one) for one in zip(laws, slips, ways, states.tolist(), strict=True)]
-    return Start(_closed(whole, at.status, position), velocity, np.array(friction_state))
+    return Start(_closed(whole, at.status, position), velocity, np.array(friction_state), at.found)
 
 
 def at_rest(system: System, asked: InitialEquilibrium) -> tuple[Structure, Structure, Equilibrium]:

@@ -25,10 +25,9 @@ OF_THE_CONTACT = 0.5
 MOST_MODES = 300
 
 
-def notes_of(system: System, arrays: Assembly, duration: float) -> str:
-    """Return the notes on a system that is simulated for a duration [s], separated by semicolons."""
-    ends = [*_bodies(system), *_at_rest(system), *_frictionless(system), *_near_cutoff(system, arrays, duration)]
-    return "; ".join(ends)
+def notes_of(system: System, arrays: Assembly, duration: float) -> list[str]:
+    """Return the notes on a system that is simulated for a duration [s]."""
+    return [*_bodies(system), *_at_rest(system), *_frictionless(system), *_near_cutoff(system, arrays, duration)]
 
 
 def _bodies(system: System) -> Iterator[str]:

@@ -23,7 +23,7 @@ from ..version import __version__
 from .task import one_thread_each
 
 # Names of the variables of root loci.
-OWN = ("mode", "frequency", "growth_rate", "unstable", "unstable_modes", "equilibrium")
+OWN = ("mode", "frequency", "growth_rate", "unstable", "unstable_modes", "equilibrium", "equilibria")
 SystemOf = Callable[[float], System]
 Source = str | Path | xr.Dataset | SystemOf
 
@@ -65,8 +65,8 @@ def root_loci(
     -------
     xarray.Dataset
         Over the parameter and ``mode``: ``frequency`` [Hz], ``growth_rate`` [1/s] and whether ``unstable``, NaN and
-        False where a mode does not exist; over the parameter ``equilibrium`` and ``unstable_modes``, the number of all
-        growing modes.
+        False where a mode does not exist; over the parameter ``equilibrium``, ``equilibria`` as in
+        `sliding_stability`, and ``unstable_modes``, the number of all growing modes.
 
     Raises
     ------
@@ -98,6 +98,7 @@ def root_loci(
                 described("1", "number of growing modes"),
             ),
             "equilibrium": (key, [one.attrs["equilibrium"] for one in found]),
+            "equilibria": (key, [one.attrs["equilibria"] for one in found]),
         },
         {key: (key, grid, {"units": units}), "mode": np.arange(followed.shape[1])},
         _origin(source, overrides),

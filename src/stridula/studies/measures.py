@@ -173,6 +173,7 @@ MEASURES = {
                 Column("flutter_frequency", "Hz", "frequency of the mode that grows fastest"),
                 Column("unstable_modes", "1", "number of modes that grow"),
                 Column("equilibrium", "", "kind of equilibrium by linear theory", is_text=True),
+                Column("equilibria", "", "number of equilibria in words", is_text=True),
             ),
             of_system=stability_of,
         ),

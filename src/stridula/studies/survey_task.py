@@ -65,14 +65,14 @@ class SurveyTask:
     def _survey(self, scenario: Scenario, outcome: Outcome, watch: Callable[[], None]) -> None:
         """Add the results of linear theory and the fates of the modes to an outcome."""
         system, start = without_start(scenario.system, self.options.velocity)
-        kind, status = equilibrium_at_start(system, start)
-        outcome["values"] = {"equilibrium": kind, "modes": []}
-        if kind == JAMMED or SLIDING not in status:
+        at = equilibrium_at_start(system, start)
+        outcome["values"] = {"equilibrium": at.kind, "equilibria": at.found, "modes": []}
+        if at.kind == JAMMED or SLIDING not in at.status:
             # Only sliding contacts feed a vibration.
-            outcome["ended"] = kind
-            outcome["values"] |= {} if kind == JAMMED else {"unstable_modes": 0.0}
+            outcome["ended"] = at.kind
+            outcome["values"] |= {} if at.kind == JAMMED else {"unstable_modes": 0.0}
             return
-        start = replace(start, status=status)
+        start = replace(start, status=at.status)
         rest = modes_at_rest(system, start)
         runs = Runs(replace(scenario, system=system), start, rest, self.options, watch)
         outcome["ended"] = UNSTABLE if rest.reach else STABLE

@@ -26,6 +26,7 @@ STILL = 1e-3
 OF_POINTS = {
     "verdict": ("", "verdict of linear theory: stable, unstable, held, lifted off, jammed, or the step that failed"),
     "equilibrium": ("", "kind of the equilibrium"),
+    "equilibria": ("", "number of equilibria in words"),
     "unstable_modes": ("1", "number of modes that grow"),
     "living_modes": ("1", "number of modes that persist in their own limit cycle"),
     "message": ("", "message of a failure, empty if none"),
@@ -145,6 +146,7 @@ def _of_points(outcomes: Sequence[Outcome]) -> dict[str, Array]:
     return {
         "verdict": np.array([outcome["ended"] for outcome in outcomes], dtype=object),
         "equilibrium": np.array([one.get("equilibrium", "") for one in known], dtype=object),
+        "equilibria": np.array([one.get("equilibria", "") for one in known], dtype=object),
         "unstable_modes": np.array([one.get("unstable_modes", np.nan) for one in known], dtype=float),
         "living_modes": np.array(living, dtype=float),
         "message": np.array([outcome["message"] for outcome in outcomes], dtype=object),

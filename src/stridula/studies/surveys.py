@@ -95,10 +95,11 @@ def squeal_survey(
     -------
     xarray.Dataset
         Over the points: ``verdict`` (stable, unstable, held, lifted off, jammed, not built, not started),
-        ``equilibrium``, ``unstable_modes``, ``living_modes`` and ``message``. Over the points and ``mode``, NaN or
-        empty where a mode does not grow: ``frequency`` [Hz] and ``growth_rate`` [1/s] by linear theory,
-        ``seen_frequency`` and ``seen_growth_rate`` in the run, ``fate``, ``regime``, levels, shares, ``sound_level``
-        [dB] and more; additionally over ``tone`` the tones of the limit cycle and their modes.
+        ``equilibrium``, ``equilibria`` (their number in words, as in `sliding_stability`), ``unstable_modes``,
+        ``living_modes`` and ``message``. Over the points and ``mode``, NaN or empty where a mode does not grow:
+        ``frequency`` [Hz] and ``growth_rate`` [1/s] by linear theory, ``seen_frequency`` and ``seen_growth_rate`` in
+        the run, ``fate``, ``regime``, levels, shares, ``sound_level`` [dB] and more; additionally over ``tone`` the
+        tones of the limit cycle and their modes.
 
     Raises
     ------
