@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
+import stat
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO
+from typing import IO, BinaryIO
 
-from .checks import ArgumentError
+from .checks import ArgumentError, at_least
 
 try:
     import fcntl
@@ -19,6 +21,8 @@ except ImportError:
 
 # Longest name of a file that a message shows in full.
 LONGEST_NAME = 200
+# Largest file that is read into memory as a whole, and largest text of a scenario or a table [bytes].
+LARGEST, LARGEST_TEXT = 4 * 1024**3, 256 * 1024**2
 LEFT_OVER = re.compile(r"\.stridula-(\d+)-\d+\.part")
 # Endings of names by which programs recognise the format of a file.
 TABLES = (".csv", ".tsv", ".txt", ".dat", ".xls", ".xlsx", ".ods", ".parquet", ".feather", ".json", ".yaml", ".yml")
@@ -31,11 +35,47 @@ FORMATS = (*TABLES, *ARRAYS, *PICTURES, *SOUNDS, *OTHERS)
 RECORDS = (".nc", ".nc4", ".cdf", ".netcdf", ".h5", ".hdf", ".hdf5")
 
 
-def read(path: str | Path, size: int = -1) -> bytes:
-    """Return the content of a file, or its first `size` bytes."""
+def read(path: str | os.PathLike[str], size: int = -1, *, most: int = LARGEST) -> bytes:
+    """Return the content of a regular file of at most `most` bytes, or its first `size` bytes."""
+    cannot = f"cannot read {named(path)}"
+    with opened(path) as file:
+        length = os.fstat(file.fileno()).st_size
+        if size < 0 and length > most:
+            words = f"{at_least(length / 1024**2, 4)} MiB, but at most {most // 1024**2} MiB are read"
+            raise OSError(f"{cannot}: {words}")
+        with one_line(cannot):
+            return file.read(size)
+
+
+def opened(path: str | os.PathLike[str]) -> BinaryIO:
+    """Return a regular file, opened for reading.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read, or is a pipe, a device or a socket.
+    """
+    check_regular(path)
+    with one_line(f"cannot read {named(path)}"):
+        return open(path, "rb")
+
+
+def check_regular(path: str | os.PathLike[str]) -> None:
+    """Raise OSError unless `path` is a regular file: reading from a pipe or a device may never end."""
     check_path("path", path)
-    with one_line(f"cannot read {named(path)}"), open(path, "rb") as file:
-        return file.read(size)
+    with one_line(f"cannot read {named(path)}"):
+        kind = irregular(path)
+        if kind == "directory":
+            raise IsADirectoryError(errno.EISDIR, "is a directory")
+        if kind:
+            raise OSError(f"it must be a regular file, got a {kind}")
+
+
+def irregular(path: str | os.PathLike[str]) -> str:
+    """Return the kind of a path other than a regular file, such as ``pipe``; empty for a regular file."""
+    mode = os.stat(path).st_mode
+    kinds = {stat.S_IFDIR: "directory", stat.S_IFIFO: "pipe", stat.S_IFSOCK: "socket"}
+    return "" if stat.S_ISREG(mode) else kinds.get(stat.S_IFMT(mode), "device")
 
 
 def check_path(name: str, path: object) -> None:
@@ -140,7 +180,7 @@ def _sweep(folder: Path) -> None:
         for name in os.listdir(folder):
             found = LEFT_OVER.fullmatch(name)
             if found and not _is_running(int(found[1])):
-                with suppress(OSError), open(folder / name, "rb") as file:
+                with suppress(OSError), opened(folder / name) as file:
                     # Where machines share a folder, the process may run on another machine.
                     _lock(file)
                     (folder / name).unlink()

@@ -321,3 +321,14 @@ def test_field_harness_sees_a_missing_field():
 
 def test_modules_have_a_docstring():
     assert violating(lambda path: not ast.get_docstring(ast.parse(path.read_text(encoding="utf-8")))) == {}
+
+
+def opens_files(path: Path) -> bool:
+    """Return whether a module calls `open`."""
+    calls = (node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.Call))
+    return any(isinstance(call.func, ast.Name) and call.func.id == "open" for call in calls)
+
+
+def test_only_disk_opens_files():
+    # The reader of decks asks disk before it does.
+    assert set(violating(opens_files)) - {"bodies.solid_files"} == {"disk"}

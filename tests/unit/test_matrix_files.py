@@ -373,6 +373,15 @@ def test_files_of_more_than_2_gib_are_refused_unread(tmp_path, monkeypatch):
         ReducedBody.read(tmp_path / "b.npz")
 
 
+@pytest.mark.parametrize("content", ["2 2 3\n1 1 3.0e4\n2 1 -1.0e4\n2 2 1.0e4\n", "% made by hand\n2 2 1\n1 1 3.0\n"])
+def test_matrix_market_files_without_their_first_line_are_named(content, tmp_path):
+    path = tmp_path / "k.mtx"
+    path.write_text(content)
+    words = "the first line must be '%%MatrixMarket matrix coordinate real symmetric' or a similar one"
+    with pytest.raises(ValueError, match=rf"^cannot read '.*k.mtx': {words}"):
+        ReducedBody.read(mass=path, stiffness=path, points={"tip": (0, 1)})
+
+
 def test_missing_files_and_folders_are_named(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"^cannot read 'no.npz': no such file or directory$"):
         ReducedBody.read("no.npz")

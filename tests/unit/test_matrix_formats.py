@@ -172,6 +172,24 @@ def test_ansys_matrix_market_with_one_mapping(ending, tmp_path):
     check_chain(ReducedBody.read(**files, points=END))
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_harwell_boeing_files_of_scipy(sign, tmp_path):
+    """Their columns are narrower than their header announces."""
+    matrix = np.diag(np.linspace(1.0, 3.0, 7)) + sign * 0.1 * (np.eye(7, k=1) + np.eye(7, k=-1))
+    scipy.io.hb_write(tmp_path / "k.matrix", scipy.sparse.csc_matrix(matrix))
+    body = ReducedBody.read(mass=tmp_path / "k.matrix", stiffness=tmp_path / "k.matrix", points={"tip": (0, 1)})
+    np.testing.assert_array_equal(body.stiffness, matrix)
+
+
+@pytest.mark.parametrize("line", ["-1.0E+00 2.0E+00 x", "1.0E+00 -2.0E+00", "1.0 2.0 3.0 4.0"])
+def test_damaged_lines_of_such_files_are_named(line, tmp_path):
+    scipy.io.hb_write(tmp_path / "k.matrix", scipy.sparse.csc_matrix(np.diag([1.0, 2.0, 3.0]) - 0.1))
+    lines = (tmp_path / "k.matrix").read_text().splitlines()
+    written(tmp_path, {"k.matrix": "\n".join([*lines[:-2], line, lines[-1]])})
+    with pytest.raises(ValueError, match=r"line \d+ must be 3 numbers of 25 characters, got"):
+        ReducedBody.read(mass=tmp_path / "k.matrix", stiffness=tmp_path / "k.matrix", points={"tip": (0, 1)})
+
+
 def test_scipy_reads_the_harwell_boeing_files_of_these_tests(tmp_path):
     """Those that SciPy supports: without a right-hand side."""
     written(

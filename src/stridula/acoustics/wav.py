@@ -24,6 +24,8 @@ NORMALISED = "normalised"
 # Peak of a normalised file below full scale [dB]: the signal that players make may exceed its samples.
 HEADROOM = 1.0
 # Full scale of integers, one step beyond the largest value.
+# Most bytes of the samples of a file that is read, as floats.
+LARGEST = 4 * 1024**3
 STEPS = {"PCM_16": 2**15, "PCM_24": 2**23}
 SCALE = re.compile(r"stridula: full_scale_pascal=(\S+) start_second=(\S+)")
 
@@ -206,7 +208,8 @@ def read_wav(path: str | Path, full_scale: float | None = None) -> xr.DataArray:
     Raises
     ------
     ValueError
-        If it is not a sound file, or neither the file nor `full_scale` has its full scale.
+        If it is not a sound file, if its samples have more than 4 GiB, or if neither the file nor `full_scale` has its
+        full scale.
     OSError
         If the file cannot be read.
     """
@@ -216,6 +219,10 @@ def read_wav(path: str | Path, full_scale: float | None = None) -> xr.DataArray:
     content = read(path)
     try:
         with soundfile.SoundFile(io.BytesIO(content)) as file:
+            size = 8 * file.frames * file.channels
+            if size > LARGEST:
+                got = f"{at_least(size / 1024**3, 3)} GiB in {str(path)!r}"
+                raise ArgumentError("path", f"have samples of at most {LARGEST // 1024**3} GiB", str(path), got=got)
             comment, rate, samples = file.comment, file.samplerate, file.read(dtype="float64", always_2d=True)
     except (soundfile.SoundFileError, TypeError) as error:
         # The full message also names the bytes in memory.

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError, choice, in_one_line
-from ..disk import check_path, named, one_line
+from ..disk import named, opened
 from ..extras import named_extras
 from .profile_mesh import BODY
 
@@ -67,9 +67,7 @@ def _read(path: str | os.PathLike[str]) -> Any:
     with named_extras():
         import meshio
 
-    check_path("path", path)
-    with one_line(f"cannot read {named(path)}"), open(path, "rb"):
-        pass
+    opened(path).close()
     said = io.StringIO()
     try:
         with redirect_stdout(said), redirect_stderr(said):

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, in_one_line, listed
-from ..disk import one_line
+from ..disk import one_line, opened
 from ..extras import named_extras
 from .cut_elements import can_be_cut, cut_into_tetrahedra, triangles_of
 from .solid_kinds import KINDS, ElementKind, outer_faces
@@ -50,10 +50,9 @@ def read_mesh(path: str | os.PathLike[str]) -> dict[str, Any]:
     if form is None:
         raise ArgumentError("path", f"end in {', '.join(FORMATS)}", os.fspath(path))
     prefix = f"cannot read {os.fspath(path)!r}"
+    opened(path).close()
     with one_line(prefix):
         size = os.stat(path).st_size
-        with open(path, "rb"):
-            pass
     if size > LARGEST_FILE:
         raise ValueError(f"{prefix}: {at_least(size / 1024**3, 3)} GiB, but at most 2 GiB are read")
     if not size:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..checks import ArgumentError, brief, listed
-from ..disk import read
+from ..disk import LARGEST_TEXT, read
 from ..scenarios.quantities import parts
 from ..studies.points import Grid, LatinHypercube, Range
 
@@ -237,7 +237,7 @@ def _count(text: str, piece: str) -> int:
 def _rows(path: str) -> list[dict[str, str]]:
     """Return the rows of a table as dictionaries keyed by its header."""
     try:
-        text = read(path).decode("utf-8-sig")
+        text = read(path, most=LARGEST_TEXT).decode("utf-8-sig")
         lines = [(number, row) for number, row in enumerate(csv.reader(io.StringIO(text)), start=1) if any(row)]
     except (UnicodeDecodeError, csv.Error) as error:
         raise ArgumentError("--points", "be a CSV file in UTF-8", path, got=f"{path!r}: {error}") from None

@@ -11,11 +11,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..checks import ArgumentError, in_one_line, instance
+from ..checks import ArgumentError, at_least, in_one_line, instance
 from ..disk import RECORDS, check_ending, check_writable, named, read, write
 from ..extras import named_extras, require
 
 MAGIC = b"\x89HDF\r\n\x1a\n"
+# Most bytes of all variables of a record together, unpacked.
+LARGEST = 16 * 1024**3
 
 
 def save(run: xr.Dataset, path: str | Path) -> None:
@@ -31,14 +33,18 @@ def save(run: xr.Dataset, path: str | Path) -> None:
     Raises
     ------
     ValueError
-        If `run` is no record or NetCDF cannot store it, or if `path` has the ending of another format, such as
-        ``.csv``: `export` writes tables.
+        If `run` is no record, has more than 16 GiB or NetCDF cannot store it, or if `path` has the ending of another
+        format, such as ``.csv``: `export` writes tables.
     OSError
         If the file cannot be written; no partial file is left.
     ImportError
         If the extra ``files`` is not installed.
     """
     instance("run", run, xr.Dataset)
+    if run.nbytes > LARGEST:
+        raise ArgumentError(
+            "run", f"have at most {LARGEST // 1024**3} GiB", got=f"{at_least(run.nbytes / 1024**3, 3)} GiB"
+        )
     check_ending("path", path, RECORDS, "NetCDF file", "export writes tables, plot figures")
     require("h5py")
     with named_extras():
@@ -78,11 +84,12 @@ def load(path: str | Path) -> xr.Dataset:
     OSError
         If the file cannot be read.
     ValueError
-        If it is not a record.
+        If it is not a record, has more than 16 GiB when unpacked, or refers to data in other files.
     ImportError
         If the extra ``files`` is not installed.
     """
     origin_of(path)
+    _check_size(path)
     with _readable(path):
         run = xr.load_dataset(path, engine="h5netcdf", decode_times=False)
     run.attrs = {name: value.item() if isinstance(value, np.generic) else value for name, value in run.attrs.items()}
@@ -128,6 +135,26 @@ def origin_of(path: str | Path) -> dict[str, str]:
 def is_record(path: str | Path) -> bool:
     """Return whether a file is an HDF5 file, as records are."""
     return read(path, len(MAGIC)) == MAGIC
+
+
+def _check_size(path: str | Path) -> None:
+    """Raise ValueError if the variables of a file are too large when unpacked, or lie elsewhere."""
+    with named_extras():
+        import h5py
+    size, elsewhere = 0, []
+    with _readable(path), h5py.File(path, "r") as file:
+        for name in file:
+            # A link to another file is not followed.
+            found = file[name] if isinstance(file.get(name, getlink=True), h5py.HardLink) else None
+            if not isinstance(found, h5py.Dataset) or found.external or found.is_virtual:
+                elsewhere.append(name)
+            else:
+                size += (found.size or 0) * found.dtype.itemsize
+    if elsewhere:
+        raise ArgumentError("path", "hold all its variables itself", path, got=f"{elsewhere[0]!r} of {named(path)}")
+    if size > LARGEST:
+        got = f"{at_least(size / 1024**3, 3)} GiB in {named(path)}"
+        raise ArgumentError("path", f"have at most {LARGEST // 1024**3} GiB when unpacked", path, got=got)
 
 
 @contextmanager

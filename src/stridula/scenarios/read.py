@@ -12,8 +12,8 @@ from typing import Any
 import xarray as xr
 
 from ..checks import brief, suggestion
-from ..disk import is_there, named, read
-from ..records.files import MAGIC, scenario_of
+from ..disk import LARGEST_TEXT, irregular, is_there, named, read
+from ..records.files import is_record, scenario_of
 from ..records.packed import is_packed
 from .errors import ScenarioError, shown
 from .inheritance import merged, spelled_out
@@ -100,15 +100,14 @@ def _record_tables(record: xr.Dataset) -> dict[str, Any]:
 
 
 def _file_tables(path: Path) -> dict[str, Any]:
-    if path.is_dir() or path.is_char_device() or path.is_block_device():
-        raise ScenarioError(
-            [f"scenario must be a file, got {str(path)!r}, a {'directory' if path.is_dir() else 'device'}"]
-        )
-    content = read(path)
-    if content.startswith(MAGIC):
+    kind = irregular(path)
+    if kind:
+        way = f"; {PIPED} reads the standard input" if kind == "pipe" else ""
+        raise ScenarioError([f"scenario must be a file, got {str(path)!r}, a {kind}{way}"])
+    if is_record(path):
         title, text = scenario_of(path)
         return {"title": title} | _parsed(text, str(path))
-    return _tables_of(content, str(path), path.parent)
+    return _tables_of(read(path, most=LARGEST_TEXT), str(path), path.parent)
 
 
 @cache

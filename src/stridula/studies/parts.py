@@ -10,7 +10,7 @@ from typing import Any
 import xarray as xr
 
 from ..checks import ArgumentError
-from ..disk import RECORDS, check_ending, check_writable, one_line, write
+from ..disk import RECORDS, check_ending, check_writable, one_line, read, write
 from ..records.files import is_record, load, save
 from .task import Outcome
 
@@ -83,7 +83,7 @@ class Parts:
 
     def _identity_on_disk(self) -> dict[str, str] | None:
         try:
-            found = json.loads(self._description.read_bytes())
+            found = json.loads(read(self._description))
         except (OSError, ValueError):
             return None
         return found if isinstance(found, dict) else None
@@ -164,7 +164,7 @@ class Parts:
     def _read(self, number: int) -> list[Outcome] | None:
         """Return a part, None if it is missing or damaged."""
         try:
-            part = json.loads(self._path(number).read_bytes())
+            part = json.loads(read(self._path(number)))
         except (OSError, ValueError):
             return None
         is_whole = isinstance(part, list) and all(

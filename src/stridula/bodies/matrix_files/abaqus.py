@@ -8,6 +8,7 @@ from collections import Counter
 import numpy as np
 
 from .entries import LABEL_BASE, Entries, by_position, filled_in, key_of, labels_of
+from .matrix_market import HEADER
 from .text import Layout, first_bad, table, text_of
 
 LABELLED = Layout(5, "'node, dof, node, dof, value'", "*")
@@ -30,6 +31,8 @@ def read_abaqus(_: str, path: str | os.PathLike[str]) -> Entries:
     least = min(int(rows.min()), int(others.min()))
     if least < 1:
         raise ValueError(f"rows and columns must be numbered from 1, got {least}")
+    if rows.size > 1 and rows[0] == others[0] == max(rows.max(), others.max()) and values[0] == rows.size - 1:
+        raise ValueError(f"{HEADER}, but it begins with '{rows[0]} {others[0]} {values[0]:.0f}', the size of a matrix")
     i, j, keys = by_position(rows - 1, others - 1)
     i, j, values = filled_in(i, j, values, keys.size, lambda k: int(keys[k]) + 1)
     return Entries(keys[i], keys[j], values, is_penalised=True)

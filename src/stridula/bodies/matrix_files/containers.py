@@ -14,7 +14,7 @@ import scipy.io
 import scipy.sparse
 
 from ...checks import ArgumentError, at_least, listed
-from ...disk import write
+from ...disk import opened, write
 from . import limits
 from .limits import check_size
 from .matlab import read_matlab
@@ -54,14 +54,14 @@ def write_npz(path: str | os.PathLike[str], arrays: Mapping[str, Any]) -> None:
 
 
 def _npz(path: str | os.PathLike[str]) -> dict[str, Any]:
-    with zipfile.ZipFile(path) as archive:
+    with opened(path) as content, zipfile.ZipFile(content) as archive:
         unpacked = sum(entry.file_size for entry in archive.infolist())
         if unpacked > limits.LARGEST_FILE:
             raise ValueError(f"{at_least(unpacked / 1024**3, 3)} GiB when unpacked, but at most 2 GiB are read")
         entries = _arrays_in(archive)
         for name, entry in entries.items():
             _check_header(name, archive, entry)
-    with np.load(path, allow_pickle=False) as file:
+    with opened(path) as content, np.load(content, allow_pickle=False) as file:
         return _by_words({name: file[name] for name in entries})
 
 
@@ -110,7 +110,7 @@ def _equal(one: Any, other: Any) -> bool:
 
 
 def _mat(path: str | os.PathLike[str]) -> dict[str, Any]:
-    with open(path, "rb") as file:
+    with opened(path) as file:
         # A file of version 4 begins with a number below 5000.
         is_of_version_5 = 0 not in file.read(4)
     arrays = _by_words((read_matlab if is_of_version_5 else _of_version_4)(path, _is_matrix, _check_shape))

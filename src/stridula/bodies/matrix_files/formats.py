@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ...checks import at_least, in_one_line
-from ...disk import one_line
+from ...disk import check_regular, opened
 from . import limits
 from .abaqus import read_abaqus
 from .calculix import read_calculix
@@ -18,13 +18,14 @@ from .containers import read_mat, read_npz
 from .dmig import held_in_dmig, is_dmig, read_dmig
 from .entries import Entries
 from .harwell_boeing import is_harwell_boeing, read_harwell_boeing
-from .matrix_market import read_matrix_market
+from .matrix_market import HEADER, read_matrix_market
 from .nastran import Held, roles
 from .output4 import held_in_output4, is_output4, read_output4
 
 PathLike = str | os.PathLike[str]
 # Bytes that are searched to recognise a format: a deck may begin with a page of remarks.
 HEAD = 8192
+BANNER = b"%%MatrixMarket"
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ FORMATS = (
     Format("MATLAB", lambda head: head.startswith(b"MATLAB 5.0"), (".mat",), whole=read_mat),
     Format(
         "Matrix Market",
-        lambda head: head.startswith(b"%%MatrixMarket"),
+        lambda head: head.startswith(BANNER),
         matrix=read_matrix_market,
         labels=(".mapping",),
     ),
@@ -105,6 +106,7 @@ REFUSED: tuple[tuple[Callable[[bytes, str], bool], str], ...] = (
         lambda head, ending: ending == ".op2" and b"\0" in head,
         "an OUTPUT2 file of Nastran; write its matrices as OUTPUT4 or DMIG",
     ),
+    (lambda head, ending: head.startswith(b"%") and not head.startswith(BANNER), HEADER),
 )
 
 
@@ -119,10 +121,9 @@ def format_of(path: PathLike) -> Format:
         If it is empty, too large, or of a format that is recognised but not read.
     """
     cannot = f"cannot read {os.fspath(path)!r}"
-    with one_line(cannot):
-        size = os.stat(path).st_size
-        with open(path, "rb") as file:
-            head = file.read(HEAD)
+    with opened(path) as file:
+        size = os.fstat(file.fileno()).st_size
+        head = file.read(HEAD)
     if size > limits.LARGEST_FILE:
         raise ValueError(f"{cannot}: {at_least(size / 1024**3, 3)} GiB, but at most 2 GiB are read")
     if not head:
@@ -139,6 +140,7 @@ def format_of(path: PathLike) -> Format:
 @contextmanager
 def whole_file(path: PathLike) -> Iterator[None]:
     """Turn any exception of a reader on a damaged file into a message of one line with the path."""
+    check_regular(path)
     try:
         yield
     except Exception as error:

@@ -14,6 +14,7 @@ import numpy as np
 import scipy.sparse
 
 from ...arrays import Array
+from . import limits
 
 HEADER = 128
 # Types of elements that hold numbers, and types that hold a variable.
@@ -61,7 +62,7 @@ def read_matlab(
     if len(content) < HEADER:
         raise ValueError("it ends within its header")
     order = ">" if bytes(content[126:128]) == b"MI" else "<"
-    found = {}
+    found, unpacked = {}, 0
     for kind, data in _elements(content[HEADER:], order):
         if kind not in (VARIABLE, COMPRESSED):
             continue
@@ -70,7 +71,12 @@ def read_matlab(
         if not is_wanted(heading.name):
             continue
         check_shape(heading.name, heading.shape)
-        found[heading.name] = _matrix(heading, data if kind == VARIABLE else _unpacked(data, order), order)
+        if kind == COMPRESSED:
+            data = _unpacked(data, order)
+            unpacked += len(data)
+        if unpacked > limits.LARGEST_FILE:
+            raise ValueError(f"more than {limits.LARGEST_FILE // 1024**3} GiB when unpacked")
+        found[heading.name] = _matrix(heading, data, order)
     return found
 
 

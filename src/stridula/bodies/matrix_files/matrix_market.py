@@ -16,6 +16,9 @@ from .entries import Entries, check_full, with_mirror_images
 from .limits import LARGEST_SIZE, LARGEST_SPARSE, check_size
 from .text import Layout, first_bad, table, text_of
 
+# For files without it.
+HEADER = "the first line must be '%%MatrixMarket matrix coordinate real symmetric' or a similar one"
+
 ENTRY = Layout(3, "'row column value'", "%")
 VALUE = Layout(1, "one number", "%")
 

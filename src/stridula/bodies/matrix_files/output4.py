@@ -15,6 +15,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...checks import ArgumentError
+from ...disk import opened
 from .entries import Entries, check_full, filled_in
 from .limits import LARGEST_SPARSE, check_size
 from .nastran import Held, chosen
@@ -226,7 +227,7 @@ class _Binary:
     """A binary file: records with their length before and after them."""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        self._file: BinaryIO = open(path, "rb")  # noqa: SIM115 - closed on leaving
+        self._file: BinaryIO = opened(path)
         self._end = os.stat(path).st_size
         self._order = _order(self._file.read(64))
         self._file.seek(0)
@@ -315,6 +316,6 @@ def _order(head: bytes) -> str:
 
 
 def _opened(path: str | os.PathLike[str]) -> _Text | _Binary:
-    with open(path, "rb") as file:
+    with opened(path) as file:
         is_binary = bool(_order(file.read(64)))
     return _Binary(path) if is_binary else _Text(path)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import itertools
 import os
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TextIO
 
 import numpy as np
 
 from ...arrays import Array
+from ...disk import opened
 
 # Lines that are converted to numbers at once.
 PIECE = 2**18
@@ -163,6 +166,11 @@ class Lines:
             return cells.astype(float)
         except ValueError:
             pass
+        # SciPy announces columns that are wider than those it writes.
+        words = [line.split() for line in map(_fortran, lines)]
+        if [len(line) for line in words] == [min(across, count - at) for at in range(0, count, across)]:
+            with suppress(ValueError):
+                return np.array([float(word) for line in words for word in line])
         for at, cell in enumerate(cells.tolist()):
             try:
                 float(cell)
@@ -178,4 +186,4 @@ def _fortran(line: str) -> str:
 
 def text_of(path: str | os.PathLike[str]) -> TextIO:
     """Open a file as text of any encoding."""
-    return open(path, encoding="latin-1")
+    return io.TextIOWrapper(opened(path), encoding="latin-1")
