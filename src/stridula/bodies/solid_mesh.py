@@ -109,13 +109,14 @@ class SolidMesh:
         warn_of(doubts_of_size(float(self.size.max())))
 
     @classmethod
-    def read(cls, path: str | os.PathLike[str], scale: float = 1.0) -> SolidMesh:
+    def read(cls, path: str | os.PathLike[str], scale: float = 1.0, part: str | None = None) -> SolidMesh:
         """Read a mesh of gmsh (``.msh``), Abaqus or CalculiX (``.inp``), Nastran (``.bdf``, ``.nas``) or VTK.
 
         Groups of elements become volumes. Groups of faces, or of nodes that hold all nodes of a face on the surface,
         become faces. Groups of nodes remain sets of nodes. Names are those of the file: physical groups of gmsh,
         element and node sets of Abaqus, numbers of properties of Nastran; in VTK the name of an array of whole numbers
-        and a number in it, such as "region 2". Nodes without a solid element are left out.
+        and a number in it, such as "region 2". Nodes without a solid element are left out. Instances of parts of Abaqus
+        are at their places. A warning names what a deck has besides solid elements.
 
         Parameters
         ----------
@@ -123,6 +124,8 @@ class SolidMesh:
             The file.
         scale : float, optional
             Length of its unit [m], 0.001 for millimetres.
+        part : str, optional
+            The part to read of a file with several: the name of an instance, of a group of elements or of a material.
 
         Returns
         -------
@@ -139,7 +142,9 @@ class SolidMesh:
         """
         instance("path", path, (str, os.PathLike))
         length = positive("scale", scale)
-        parts = solid_files.read_mesh(path)
+        if part is not None:
+            instance("part", part, str)
+        parts = solid_files.read_mesh(path, part)
         return cls(parts.pop("nodes") * length, **parts)
 
     @classmethod

@@ -84,7 +84,17 @@ class Deck:
 
 
 class DeckError(ValueError):
-    """A line of a deck cannot be read: the message names it and a remedy, not the file."""
+    """A line of a deck cannot be read.
 
-    def __init__(self, line: int, words: str) -> None:
-        super().__init__(f"line {line}: {words}")
+    Parameters
+    ----------
+    line : int
+        The line, from 1.
+    words : str
+        The fault and a remedy.
+    file : str, optional
+        Name of the included file with this line; the deck itself if left out.
+    """
+
+    def __init__(self, line: int, words: str, file: str = "") -> None:
+        super().__init__(f"{file}, line {line}: {words}" if file else f"line {line}: {words}")
