@@ -44,10 +44,13 @@ SOLIDS = {
     "CPYRAM": _PYRAMID,
     "CPYRA": _PYRAMID,
 }
-SHELLS = {"CTRIA3": ("triangle", 3), "CTRIA6": ("triangle", 3), "CQUAD4": ("quad", 4), "CQUAD8": ("quad", 4)}
+SHELLS = {
+    **dict.fromkeys(("CTRIA3", "CTRIA6", "CTRIAR"), ("triangle", 3)),
+    **dict.fromkeys(("CQUAD4", "CQUAD8", "CQUADR"), ("quad", 4)),
+}
 # Elements, constraints, materials, matrices and sets that are not read, but counted.
 LEFT_OUT = re.compile(
-    r"C(?!ORD|END$)\w+|RB\w+|RROD|RJOINT|RTRPLT1?|RSPLINE|RSSCON|MPC|GENEL|DMIG|MAT(?!1$)\w+|SET\d?|CORD(?![12][RCS]$)\w+"
+    r"C(?!ORD|END$|AERO|LOAD$|REEP$|SET)\w+|RB\w+|RROD|RJOINT|RTRPLT1?|RSPLINE|RSSCON|MPC|GENEL|DMIG|MAT(?!1$)\w+|SET\d?|CORD(?![12][RCS]$)\w+"
 )
 
 
@@ -275,14 +278,16 @@ class _Model:
         ids = np.array(list(self.grids.number), dtype=np.int64)
         found: dict[str, list[int]] = {}
         for card in self.constraints:
-            name = f"SPC {card.whole(0, 'SID')}"
+            these = found.setdefault(f"SPC {card.whole(0, 'SID')}", [])
             for first, last in _constrained(card):
-                if first == last:
-                    these = self.grids.indices([first], f"{card.name} {card.text(0)}", card.where)
+                if first < last:
+                    these.extend(np.flatnonzero((ids >= first) & (ids <= last)).tolist())
+                elif first in self.grids.number:
+                    these.append(self.grids.number[first])
                 else:
-                    these = np.flatnonzero((ids >= first) & (ids <= last)).tolist()
-                found.setdefault(name, []).extend(these)
-        return {name: np.unique(these) for name, these in found.items()}
+                    # Perhaps a scalar point, which exists without a card of its own.
+                    self.left_out[card.name] += 1
+        return {name: np.unique(these) for name, these in found.items() if these}
 
 
 def _grids_of(card: Card, kind: _Solid) -> list[int]:
@@ -314,18 +319,21 @@ def _by_property(properties: list[int]) -> dict[str, Array]:
 
 def _constrained(card: Card) -> Iterator[tuple[int, int]]:
     """Yield the first and last number of each range of grids that a card constrains."""
-    if card.name == "SPC":
-        for at in range(1, len(card.fields), 3):
-            # A component of 0 or none belongs to a scalar point.
-            if card.text(at) and card.text(at + 1) not in ("", "0"):
-                grid = card.whole(at, "G")
-                yield grid, grid
-    elif card.text(1) not in ("", "0"):
-        at = 2
-        while at < len(card.fields):
-            if card.text(at):
-                first = last = card.whole(at, "G")
-                if card.text(at + 1).upper() == "THRU":
-                    last, at = card.whole(at + 2, "the grid after THRU"), at + 2
-                yield first, last
-            at += 1
+    if card.name == "SPC1":
+        yield from _ranges(card, 2)
+        return
+    for at in range(1, len(card.fields), 3):
+        if card.text(at):
+            grid = card.whole(at, "G")
+            yield grid, grid
+
+
+def _ranges(card: Card, at: int) -> Iterator[tuple[int, int]]:
+    """Yield the first and last number of each range in the fields of a card from `at` on, such as 1, THRU, 10."""
+    while at < len(card.fields):
+        if card.text(at):
+            first = last = card.whole(at, "a number")
+            if card.text(at + 1).upper() == "THRU":
+                last, at = card.whole(at + 2, "the number after THRU"), at + 2
+            yield first, last
+        at += 1

@@ -24,6 +24,9 @@ INCLUDE = re.compile(r"\s*INCLUDE(?=[\s'\"])", re.IGNORECASE)
 CONTROL = re.compile(r"\s*(?:(SET)\s+\d+\s*=|(PARAM)\s*,)", re.IGNORECASE)
 NUMBER = re.compile(r"[+-]?\.?\d[\d.]*(?:[ED]?[+-]?\d+)?", re.IGNORECASE)
 LARGEST_NUMBER = 2**62
+# First letters of lines that repeat cards with other numbers, and of lines without a name.
+OTHER_LINES = tuple("=0123456789.-/")
+CONTINUED = ("", "+", "*", *OTHER_LINES)
 # Files that include each other.
 DEEPEST = 20
 # A mark of UTF-8 at the beginning of a file, read as Latin-1.
@@ -44,11 +47,14 @@ class Card:
         Its fields after the name, eight for each line of small fields; empty where the deck has none.
     where : tuple of int and str
         Number of its first line, and name of the file if this is an included one.
+    marker : str
+        Marker at the end of its last line.
     """
 
     name: str
     fields: list[str]
     where: Where
+    marker: str = ""
 
     def text(self, at: int) -> str:
         """Return a field, empty if the card is too short."""
@@ -124,41 +130,51 @@ class _Reader:
         start, control = _control(path, file)
         yield from control
         card: Card | None = None
-        marker, is_read = "", False
-        lines = _lines(path)
+        lines = _lines(path, start)
         for number, text in lines:
             where = number, file
-            if number <= start:
-                continue
             if END.match(text):
                 break
             if BEGINNING.match(text):
                 raise refused(where, f"{text.strip()!r} begins another model: remove all models but one from the deck")
+            if _first(text)[:1] in CONTINUED and not INCLUDE.match(text):
+                self._go_on(card, text, where)
+                continue
+            if card is not None:
+                yield card
+            card = None
             if INCLUDE.match(text):
-                if card is not None:
-                    yield card
-                card = None
                 target = self._target(_quoted(text, lines), path, where)
                 yield from self._included(target, where, depth)
-            elif text[0] not in " +*,\t" or _first(text)[:1] not in ("", "+", "*"):
-                if card is not None:
-                    yield card
-                name = _first(text).rstrip("*").rstrip().upper()
-                is_read = name in self.names
-                card = Card(name, [], where)
-                if is_read:
-                    card.fields, marker = _fields(text, where)
-            elif card is None:
-                raise refused(where, f"the continuation {text.strip()[:60]!r} has no card before it")
-            elif is_read:
-                _check_marker(_first(text), marker, where)
-                fields, marker = _fields(text, where)
-                if len(fields) == len(SMALL):
-                    # The second half of a line of large fields may be left out.
-                    card.fields += [""] * (-len(card.fields) % len(SMALL))
-                card.fields += fields
+            else:
+                card = self._begun(text, where)
         if card is not None:
             yield card
+
+    def _begun(self, text: str, where: Where) -> Card:
+        """Return the card that begins with a line."""
+        name = _first(text).rstrip("*").rstrip().upper()
+        card = Card(name, [], where)
+        if name in self.names:
+            card.fields, card.marker = _fields(text, where)
+        return card
+
+    def _go_on(self, card: Card | None, text: str, where: Where) -> None:
+        """Append a line to a card."""
+        if card is None:
+            raise refused(where, f"the line {text.strip()[:60]!r} has no card before it")
+        if card.name not in self.names:
+            return
+        first = _first(text)
+        if first[:1] in OTHER_LINES:
+            words = "must begin with the name of a card, a blank, a comma, + or *"
+            raise refused(where, f"a line after {card.name} {words}, got {text.strip()[:60]!r}")
+        _check_marker(first, card.marker, where)
+        fields, card.marker = _fields(text, where)
+        if len(fields) >= len(SMALL):
+            # The second half of a line of large fields may be left out.
+            card.fields += [""] * (-len(card.fields) % len(SMALL))
+        card.fields += fields
 
     def _target(self, name: str, path: Path, where: Where) -> Path:
         """Return the file that an INCLUDE names, from the folder of its own file or of the deck."""
@@ -183,14 +199,14 @@ class _Reader:
             raise refused(where, str(error)) from error
 
 
-def _lines(path: Path) -> Iterator[tuple[int, str]]:
-    """Yield lines with their numbers, without comments and without empty ones."""
+def _lines(path: Path, start: int = 0) -> Iterator[tuple[int, str]]:
+    """Yield the lines after line `start` with their numbers, without comments and without empty ones."""
     with text_of(path) as file:
         for number, line in enumerate(file, 1):
             text = line.partition("$")[0].rstrip()
             if number == 1:
                 text = text.removeprefix(BYTE_ORDER)
-            if text:
+            if text and number > start:
                 yield number, text
 
 
@@ -227,22 +243,27 @@ def _fields(text: str, where: Where) -> tuple[list[str], str]:
     """Return the fields of a line after the first, eight small or four large ones, and the marker at its end."""
     first = _first(text)
     columns = LARGE if first.startswith("*") or first.endswith("*") else SMALL
-    if "," not in text:
-        if "\t" in text:
-            text = text.expandtabs(8)
-        return [text[start:end].strip() for start, end in columns], text[MARKER].strip()
-    count = len(columns)
-    fields = [word.strip() for word in text.split(",")[1:]]
-    marker = fields[count] if len(fields) > count else ""
-    if any(fields[count + 1 :]) or NUMBER.fullmatch(marker):
-        words = f"a line of free fields must have at most {count} fields after the first, got {text.strip()[:80]!r}"
-        raise refused(where, f"{words}: put the others on a line that begins with a comma")
-    return (fields + [""] * count)[:count], marker
+    if "," in text:
+        return _free_fields(text, len(columns), where)
+    text = text.expandtabs(8)
+    return [text[start:end].strip() for start, end in columns], text[MARKER].strip()
+
+
+def _free_fields(text: str, count: int, where: Where) -> tuple[list[str], str]:
+    """Return the fields and the marker of a line of free fields, which may be longer than a line of small ones."""
+    fields = [word.strip() for word in text.rstrip(", ").split(",")[1:]]
+    further = fields[count:]
+    if all(NUMBER.fullmatch(word) for word in further):
+        return fields + [""] * (count - len(fields)), ""
+    if len(further) > 1:
+        words = f"a line with more than {count} fields must have a marker or only numbers after them"
+        raise refused(where, f"{words}, got {text.strip()[:80]!r}")
+    return fields[:count], further[0]
 
 
 def _check_marker(first: str, marker: str, where: Where) -> None:
     """Raise DeckError if the marker at the beginning of a line is not the one at the end of the line before it."""
-    begins, ends = first.strip("+* ").upper(), marker.strip("+* ").upper()
-    if begins and ends and begins != ends:
+    begins, ends = first[1:].strip().upper(), marker.upper()
+    if begins and ends and begins not in (ends, ends[1:].strip()):
         words = f"the continuation {first!r} must follow the line that ends with it, got one that ends with {marker!r}"
         raise refused(where, words)
