@@ -132,6 +132,24 @@ def test_middle_nodes_are_in_the_order_of_vtk(tmp_path, card, has_middles):
     np.testing.assert_array_equal(deck.points[deck.blocks[0].nodes], [expected])
 
 
+@pytest.mark.parametrize("has_middles", [False, True])
+@pytest.mark.parametrize("card", ELEMENTS)
+def test_elements_with_corners_in_the_other_sense_are_mirrored(tmp_path, card, has_middles):
+    """The mirrored deck has the faces and edges of the mirrored element, with a positive volume."""
+    corners, edges, edges_of_vtk, _ = ELEMENTS[card]
+    places = (with_middles(corners, edges) if has_middles else corners) * [-1.0, 1.0, 1.0]
+    grids = "".join(f"GRID,{10 + n},,{x},{y},{z}\n" for n, (x, y, z) in enumerate(places))
+    deck = read(tmp_path, f"{grids}{card}*,7,3,{','.join(str(10 + n) for n in range(len(places)))}\n")
+    found = deck.points[deck.blocks[0].nodes[0]]
+    ring = 3 if card in ("CTETRA", "CPENTA") else 4
+    first, second, up = found[1] - found[0], found[ring - 1] - found[0], found[ring] - found[0]
+    assert np.dot(np.cross(first, second), up) > 0.0
+    assert sorted(deck.blocks[0].nodes[0]) == list(range(len(places)))
+    np.testing.assert_array_equal(found[: len(corners), 2], corners[:, 2])
+    if has_middles:
+        np.testing.assert_array_equal(found, with_middles(found[: len(corners)], edges_of_vtk))
+
+
 def test_middle_nodes_of_zero_are_none(tmp_path):
     deck = read(tmp_path, f"{GRIDS}CTETRA,1,1,1,2,4,5,0,0\n,0,,,\n")
     assert deck.blocks[0].kind == "tetra"
@@ -203,6 +221,13 @@ def test_a_deck_without_solid_elements_is_read(tmp_path):
 
 def test_equal_grids_may_be_repeated(tmp_path):
     assert len(read(tmp_path, GRIDS + GRIDS + TETRA).points) == 8
+
+
+def test_huge_numbers_give_no_warnings(tmp_path):
+    deck = read(
+        tmp_path, f"{GRIDS.replace('1.0', '1.+300')}{TETRA}GRID,20,3,1.+300,1.+300,1.+300\n{SYSTEMS['spherical'][0]}\n"
+    )
+    assert deck.count == 1
 
 
 SYSTEMS = {

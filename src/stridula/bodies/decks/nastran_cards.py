@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ...disk import is_there, named
+from ...disk import is_there, named, opened
 from ..matrix_files.nastran_cards import real
 from ..matrix_files.text import text_of
 from .deck import DeckError
@@ -115,8 +115,9 @@ def cards(path: str | os.PathLike[str], names: Collection[str]) -> Iterator[Card
     OSError
         If the deck cannot be read.
     """
+    opened(path).close()
     deck = Path(path)
-    reader = _Reader(names, deck.resolve().parent, {deck.resolve()})
+    reader = _Reader(names, deck.parent.resolve(), {deck.resolve()})
     yield from reader.cards(deck, "", 0)
 
 

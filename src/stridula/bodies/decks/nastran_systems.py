@@ -89,7 +89,19 @@ class Definition(Protocol):
 
 @dataclass(frozen=True)
 class ByPoints:
-    """A system by three points in another one."""
+    """A system by three points in another one.
+
+    Attributes
+    ----------
+    name : str
+        Name of the card and number of the system.
+    where : tuple of int and str
+        Line of the card.
+    reference : int
+        Number of the other system.
+    given : ndarray, shape (3, 3)
+        Coordinates of the points.
+    """
 
     name: str
     where: Where
@@ -107,7 +119,17 @@ class ByPoints:
 
 @dataclass(frozen=True)
 class ByGrids:
-    """A system by three grids."""
+    """A system by three grids.
+
+    Attributes
+    ----------
+    name : str
+        Name of the card and number of the system.
+    where : tuple of int and str
+        Line of the card.
+    given : tuple of int
+        Numbers of the grids.
+    """
 
     name: str
     where: Where
@@ -172,11 +194,10 @@ def _chain(numbers: list[int]) -> str:
 
 
 def _system(one: Definition, points: Array) -> System:
-    with np.errstate(all="ignore"):
-        axis, side = points[1] - points[0], points[2] - points[0]
-        z = axis / np.linalg.norm(axis)
-        across = np.cross(z, side / np.linalg.norm(side))
-        y = across / np.linalg.norm(across)
+    axis, side = points[1] - points[0], points[2] - points[0]
+    z = axis / np.linalg.norm(axis)
+    across = np.cross(z, side / np.linalg.norm(side))
+    y = across / np.linalg.norm(across)
     if not (np.isfinite(y).all() and np.linalg.norm(across) > 1e-12):
         raise refused(one.where, f"the three points of {one.name} must not lie on a line")
     return System(one.name.split()[0][-1], points[0], np.array([np.cross(y, z), y, z]))
