@@ -16,7 +16,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, brief, finite, instance, non_negative, positive
 from .modes import hashed_once
-from .profile_mesh import BODY, MOST_CELLS, SAME_PLACE, ProfileMesh, checked_mesh, lines, merged, overlap
+from .profile_mesh import BODY, MOST_MADE, SAME_PLACE, ProfileMesh, checked_mesh, lines, merged, overlap
 
 Range = tuple[float, float]
 # Largest side [m] of the cells of a part, given its thickness [m] and its region.
@@ -37,6 +37,10 @@ class Profile(Protocol):
     @property
     def size(self) -> float | None:
         """Largest side of its cells [m], None if it depends on the shortest waves."""
+
+    @property
+    def follows_waves(self) -> bool:
+        """Whether its cells are chosen for the shortest waves."""
 
     @property
     def region_names(self) -> tuple[str, ...]:
@@ -84,6 +88,11 @@ class RectangleProfile:
             (first, _), (second, _) = (self.rectangles[number] for number in shared)
             raise ArgumentError("rectangles", "not overlap", got=f"{first!r} and {second!r} with an area in common")
         self.mesh(_any_size)
+
+    @property
+    def follows_waves(self) -> bool:
+        """Whether its cells are chosen for the shortest waves."""
+        return self.size is None
 
     @property
     def region_names(self) -> tuple[str, ...]:
@@ -179,6 +188,11 @@ class LineProfile:
         self.mesh(_any_size)
 
     @property
+    def follows_waves(self) -> bool:
+        """Whether its cells are chosen for the shortest waves."""
+        return self.size is None
+
+    @property
     def region_names(self) -> tuple[str, ...]:
         """Name of its only region."""
         return (BODY,)
@@ -228,6 +242,7 @@ class MeshProfile:
 
     shape: ClassVar[str] = "mesh"
     size: ClassVar[float | None] = None
+    follows_waves: ClassVar[bool] = False
     nodes: Any
     cells: Any
     regions: Any = field(default_factory=dict)
@@ -387,8 +402,10 @@ def _any_size(thickness: float, region: str) -> float:
 
 
 def _check_count(count: float) -> None:
-    if not count <= MOST_CELLS:
-        raise ArgumentError("size", f"leave at most {MOST_CELLS} cells", got=f"{count:.6g} and more")
+    if not count <= MOST_MADE:
+        number = f"{count:.0f}" if count < 1e9 else f"{count:.3g}"
+        got = f"{number} and more: give a larger size, or a larger thickness"
+        raise ArgumentError("size", f"leave at most {MOST_MADE} cells", got=got)
 
 
 PROFILES = (RectangleProfile, LineProfile, MeshProfile)
