@@ -735,6 +735,7 @@ void march(long first_step, long steps, int modes, int pads, int pad, int pairs,
                 tangent[LAST_TANGENTIAL] = f[1 + k];
             }
             c[STATUS] = other[STATUS] = status[i];
+            c[EARLIEST_GAP] = c[EARLIER_GAP];
             c[EARLIER_GAP] = c[LAST_GAP];
             c[LAST_GAP] = u[0];
         }

@@ -166,7 +166,17 @@ FLOORS = {
         at.SLIP_VELOCITY: VELOCITY,
     },
     "carried": dict.fromkeys(
-        (at.MATERIAL, at.ANCHOR, at.ABSCISSA, at.LAST_SLIP, at.EARLIER_SLIP, at.LAST_GAP, at.EARLIER_GAP), LENGTH
+        (
+            at.MATERIAL,
+            at.ANCHOR,
+            at.ABSCISSA,
+            at.LAST_SLIP,
+            at.EARLIER_SLIP,
+            at.LAST_GAP,
+            at.EARLIER_GAP,
+            at.EARLIEST_GAP,
+        ),
+        LENGTH,
     ),
 }
 

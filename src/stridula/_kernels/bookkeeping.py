@@ -117,6 +117,7 @@ def keep_motion(i, moved, stuck, before, carried, run, zero):
     base = i * at.CARRIED
     hold(carried, base + at.EARLIER_SLIP, run, before[1])
     hold(carried, base + at.LAST_SLIP, run, choose(stuck >= 1.0, zero, moved[3]))
+    hold(carried, base + at.EARLIEST_GAP, run, held(carried, base + at.EARLIER_GAP, run, zero))
     hold(carried, base + at.EARLIER_GAP, run, held(carried, base + at.LAST_GAP, run, zero))
     hold(carried, base + at.LAST_GAP, run, moved[2])
     add(carried, base + at.MATERIAL, run, moved[3], zero)
@@ -137,7 +138,7 @@ def store_in(i, gap, contacts, state, run, zero):
     """Add the energy that a yielding contact stores in this step to the work of the contacts."""
     yields = yields_of(i, contacts.constants, run, zero)
     if anywhere(yields[0] > 0.0):
-        now, before = path_of(i, state.carried, run, zero)
+        now, before, _ = path_of(i, state.carried, run, zero)
         stored = stored_in(-gap, now, yields) - stored_in(now, before, yields)
         add(state.energies, at.CONTACT_WORK, run, stored, zero)
 
@@ -149,7 +150,7 @@ def stored_in_contacts(contacts, carried, count, run, zero):
     for i in range(count):
         yields = yields_of(i, contacts.constants, run, zero)
         if anywhere(yields[0] > 0.0):
-            now, before = path_of(i, carried, run, zero)
+            now, before, _ = path_of(i, carried, run, zero)
             energy += stored_in(now, before, yields)
     return energy
 

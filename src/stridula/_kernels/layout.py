@@ -57,7 +57,8 @@ LAW_PARAMETERS = 8
 # Scalars that each contact carries from step to step: material abscissa of the tip, anchor of the stick, last status,
 # tip's abscissa at the last two steps, last slip and the one before, internal state of the law, forces and gap of the
 # last step, share of the last step in which it was closed if it still is, gap of the step before the last, part of the
-# ratio of the next step's forces that lies before it, share of the last step in which it stuck.
+# ratio of the next step's forces that lies before it, share of the last step in which it stuck, gap of the step before
+# the last two.
 (
     MATERIAL,
     ANCHOR,
@@ -74,8 +75,9 @@ LAW_PARAMETERS = 8
     EARLIER_GAP,
     PAST_RATIO,
     STUCK_SHARE,
-) = range(15)
-CARRIED = 15
+    EARLIEST_GAP,
+) = range(16)
+CARRIED = 16
 
 # State of a contact in a step: gap, slip and abscissa, without its forces, then with them; forces, status, whether it
 # jams; while the contacts are solved together whether it may touch, has broken away, has been let go. Additional give

@@ -31,16 +31,20 @@ def yields_of(i, constants, run, zero):
 
 @numba.njit(**OPTIONS)
 def path_of(i, carried, run, zero):
-    """Return the indentations of contact `i` at the last two steps, the later first."""
+    """Return the indentations of contact `i` at the last three steps, the latest first."""
     base = i * at.CARRIED
-    return -held(carried, base + at.LAST_GAP, run, zero), -held(carried, base + at.EARLIER_GAP, run, zero)
+    return (
+        -held(carried, base + at.LAST_GAP, run, zero),
+        -held(carried, base + at.EARLIER_GAP, run, zero),
+        -held(carried, base + at.EARLIEST_GAP, run, zero),
+    )
 
 
 @numba.njit(**OPTIONS)
 def comes_close(i, gap, constants, carried, run, zero):
     """Return where a contact has to be solved: it would overlap, or was indented in the last two steps."""
     soft = held(constants, i * at.CONTACT_CONSTANTS + at.YIELD_STIFFNESS, run, zero) > 0.0
-    now, before = path_of(i, carried, run, zero)
+    now, before, _ = path_of(i, carried, run, zero)
     was = choose(soft, choose(now > before, now, before), zero)
     return choose(gap < 0.0, 1.0, choose(was > 0.0, 1.0, zero))
 
@@ -69,7 +73,7 @@ def forces_yielding(free, friction, before, let_go, step, yields, path, zero):
 
     Newton's method for the indentation, from that without force. `free` are gap, slip, distance of a stick from its
     anchor, compliance; `friction` the law, all laws, the number among these and the ratio at rest; `path` the
-    indentations of the last two steps.
+    indentations of the last three steps.
     """
     gap, slip, away, w = free
     law, laws, number, at_rest = friction

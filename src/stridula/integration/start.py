@@ -170,6 +170,9 @@ class _Start:
                 carried[i, at.FRICTION_STATE] = self.arrays.friction_state[i]
         carried[:, at.ANCHOR], carried[:, at.LAST_GAP] = carried[:, at.MATERIAL], self.gaps
         carried[:, at.EARLIER_GAP] = self.gaps - self.rows[self.first, 0] @ first - self.before[self.first, 2]
+        # Two steps earlier, with the same acceleration.
+        speeds = self.gap_speeds[self.first]
+        carried[:, at.EARLIEST_GAP] = 4.0 * carried[:, at.EARLIER_GAP] - 3.0 * self.gaps + 2.0 * self.step * speeds
         carried[:, at.ABSCISSA_BEFORE] = carried[:, at.ABSCISSA] - self.travels @ first - tip
         carried[:, at.LAST_SLIP] = self.rows[:, 1] @ first + tip - track
         # A contact at rest has not slipped, for what its forces will turn out to be.
