@@ -245,6 +245,11 @@ class AxisymmetricBody(HasCard):
         return np.array([first, [a * b * share, sign + b * b * share, -b], self.axis]) + 0.0
 
     @property
+    def unknowns(self) -> int:
+        """Degrees of freedom in all orders round the axis together, whose modes are searched for."""
+        return self.mesh.unknowns * (self._highest_order + 1)
+
+    @property
     def total_mass(self) -> float:
         """Mass [kg]."""
         volumes = self.mesh.volumes
@@ -405,12 +410,11 @@ class AxisymmetricBody(HasCard):
 
     def _check_unknowns(self) -> None:
         """Raise ValueError, before anything is computed, if the search for modes would take too long."""
-        orders = self._highest_order + 1
-        unknowns, chosen = self.mesh.unknowns * orders, self.profile.follows_waves
+        unknowns, chosen = self.unknowns, self.profile.follows_waves
         most = MOST_CHOSEN if chosen else MOST_UNKNOWNS
         if unknowns > most:
             way = "or give the profile a size" if chosen else "or take a coarser mesh"
-            words = f"{self.cutoff!r} Hz, which has {unknowns} in {orders} orders: lower it, {way}"
+            words = f"{self.cutoff!r} Hz, which has {unknowns} in {self._highest_order + 1} orders: lower it, {way}"
             raise ArgumentError("cutoff", f"leave at most {most} degrees of freedom", self.cutoff, got=words)
 
     def _cell(self, thickness: float, region: str) -> float:

@@ -18,6 +18,7 @@ import scipy.sparse
 from ..arrays import Array
 from ..checks import ArgumentError, at_most, choice, count, instance, listed
 from ..declared import FREQUENCY, Frequency, Own
+from ..long_tasks import check_wanted
 from ..ordinary import of_ordinary_size
 from . import sparse_reduction
 from .body_surfaces import HIGHEST, PointSurface, largest_part
@@ -274,6 +275,11 @@ class SolidBody(NamedPoints):
         """Return the outer surface as points with its mode shapes, fine enough for sound up to a frequency [Hz]."""
         return _surface(self, largest_part(frequency))
 
+    @property
+    def expected_modes(self) -> float:
+        """Lower bound of the number of modes below the cutoff; zero without one."""
+        return 0.0 if self.cutoff is None else _expected(self, float(_assembled(self)[0].sum()))
+
     def modes(self, held_x: bool = False) -> Modes:
         """Return the modes; `held_x` is for bodies with a driven end and must be false."""
         if held_x:
@@ -422,7 +428,16 @@ def _surface(body: SolidBody, largest: float) -> PointSurface:
 
 
 def _check_modes(body: SolidBody, mass: float) -> None:
-    """Raise ValueError if far too many modes lie below the cutoff, before any is searched for.
+    """Raise ValueError if far too many modes lie below the cutoff, before any is searched for."""
+    expected = _expected(body, mass)
+    if expected > FAR * sparse_reduction.MOST_MODES:
+        words = f"leave at most {sparse_reduction.MOST_MODES} modes of a mesh"
+        got = f"{body.cutoff:.6g} Hz, below which there are {at_most(expected, 2)} or more"
+        raise ArgumentError("cutoff", words, body.cutoff, got=got)
+
+
+def _expected(body: SolidBody, mass: float) -> float:
+    """Return a lower bound of the number of modes below the cutoff.
 
     Shear waves alone have ``V 8 pi / 3 (f / c)³`` modes below f in a volume V (Debye 1912), and thin bodies more; the
     heaviest and the fastest material give a lower bound.
@@ -430,11 +445,7 @@ def _check_modes(body: SolidBody, mass: float) -> None:
     materials = list(body.materials.values()) if isinstance(body.materials, Mapping) else [body.materials]
     fastest = max(one.young / (2.0 * (1.0 + one.poisson) * one.density) for one in materials) ** 0.5
     volume = mass / max(one.density for one in materials)
-    expected = volume * 8.0 * np.pi / 3.0 * (body.cutoff / fastest) ** 3
-    if expected > FAR * sparse_reduction.MOST_MODES:
-        words = f"leave at most {sparse_reduction.MOST_MODES} modes of a mesh"
-        got = f"{body.cutoff:.6g} Hz, below which there are {at_most(expected, 2)} or more"
-        raise ArgumentError("cutoff", words, body.cutoff, got=got)
+    return float(volume * 8.0 * np.pi / 3.0 * ((body.cutoff or 0.0) / fastest) ** 3)
 
 
 def _on_faces(body: SolidBody) -> Array:
@@ -442,6 +453,7 @@ def _on_faces(body: SolidBody) -> Array:
     places = [place for name in body.contact_faces for place in body.face_points(name).place.tolist()]
     forces = np.zeros((len(body.mesh.nodes), 3, len(places), 3))
     for number, place in enumerate(places):
+        check_wanted()
         nodes, shares = located(body.mesh, tuple(place))
         for direction in range(3):
             forces[nodes, direction, number, direction] = shares
