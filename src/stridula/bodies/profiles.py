@@ -19,6 +19,8 @@ from .modes import hashed_once
 from .profile_mesh import BODY, MOST_MADE, SAME_PLACE, ProfileMesh, checked_mesh, lines, merged, overlap
 
 Range = tuple[float, float]
+# Whole numbers from here on are not exact as floats.
+LARGEST_WHOLE = 2**53
 # Largest side [m] of the cells of a part, given its thickness [m] and its region.
 Size = Callable[[float, str], float]
 
@@ -382,13 +384,14 @@ def _sequence(name: str, values: Any) -> list[Any]:
 
 def _numbers(name: str, values: Any, kind: type) -> Array:
     try:
-        given = np.asarray(values)
-        found: Array = given.astype(kind)
+        given: Array | None = np.asarray(values)
     except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(name, "be an array of numbers", got=brief(values)) from None
-    if kind is int and not np.array_equal(found, given):
+        given = None
+    if given is None or given.dtype.kind not in "iuf":
+        raise ArgumentError(name, "be an array of numbers", got=brief(values))
+    if kind is int and not ((given == np.round(given)) & (np.abs(given) < LARGEST_WHOLE)).all():
         raise ArgumentError(name, "be whole numbers", got=brief(values))
-    return found
+    return given.astype(kind)
 
 
 def _check_division(regions: Mapping[str, Array], cells: int) -> None:

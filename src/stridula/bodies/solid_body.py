@@ -209,6 +209,7 @@ class SolidBody(NamedPoints):
 
     def face_points(self, name: str) -> FacePoints:
         """Return the points of integration on a named part of its surface: places, areas and normals."""
+        choice("name", name, self.face_names or ("none",))
         return face_points(self.mesh, name)
 
     def at(self, position: str | Sequence[float]) -> BodyPoint:

@@ -283,6 +283,7 @@ class SolidMesh:
 
     def named(self, name: str, nodes: Any) -> SolidMesh:
         """Return the mesh with an additional set of nodes, such as ``np.flatnonzero(mesh.nodes[:, 2] == 0.0)``."""
+        instance("name", name, str)
         return replace(self, node_sets={**self.node_sets, name: nodes})
 
     def face(self, name: str) -> Face:
