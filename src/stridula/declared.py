@@ -288,7 +288,9 @@ Distance = Annotated[float, Number("m", least=0.0)]
 Position = Annotated[float, Number("m")]
 Angle = Annotated[float, Number("rad")]
 Area = Annotated[float, Number("m2", above=0.0)]
-Frequency = Annotated[float, Number("Hz", above=0.0)]
+# Squares of frequencies far above any vibration of a body would overflow.
+FREQUENCY = Number("Hz", above=0.0, below=1e12)
+Frequency = Annotated[float, FREQUENCY]
 Newtons = Annotated[float, Number("N")]
 Tension = Annotated[float, Number("N", least=0.0)]
 Velocity = Annotated[float, Number("m/s")]

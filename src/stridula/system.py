@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any, TypeVar
 
-from .checks import ArgumentError, instance
+from .checks import ArgumentError, instance, listed
 from .connections import CONNECTIONS, Connection, ends, unit
 from .contact import PointContact, SurfaceContact, SurfacePoints
 from .contact.surface_points import surfaces_among
@@ -145,7 +145,16 @@ class System:
         return names if len(names) > 1 and any(names) else ()
 
     def body_name(self, body: Any) -> str:
-        """Return the name of a body: its own, slider or track, or ``body 3`` in the order of `bodies`."""
+        """Return the name of a body: its own, slider or track, or ``body 3`` in the order of `bodies`.
+
+        Raises
+        ------
+        ValueError
+            If it is not a body of the system.
+        """
+        if not any(body is one for one in self.bodies) and body not in self.bodies:
+            names = listed(self.body_name(one) for one in self.bodies)
+            raise ArgumentError("body", f"be a body of the system ({names})", body)
         if body.name:
             return str(body.name)
         if body == self.slider:

@@ -559,7 +559,7 @@ BAD_DISCS = {
         "bodies.disc.profile.shape must be one of rectangle, rectangles, line, mesh, cells, got 'rectangel'; "
         "did you mean 'rectangle'?",
     ),
-    "too many cells": ({"profile.size": 1e-9}, "bodies.disc.profile.size must leave at most 100000 cells"),
+    "too many cells": ({"profile.size": 1e-9}, "bodies.disc.profile.size must leave at most 10000 cells"),
     "an unknown place": (
         {"held": ["inner", "rim"]},
         "bodies.disc.held.1 must be one of inner, outer, bottom, top, got 'rim'",
@@ -643,7 +643,7 @@ BAD_SOLIDS = {
     ),
     "too many elements": (
         {"mesh": CUBE | {"divisions": [20000, 20000, 20000]}},
-        "bodies.a.mesh.divisions must make at most 1000000 elements",
+        "bodies.a.mesh.divisions must make at most 200000 nodes",
     ),
     "radii that fall": (
         {"mesh": MESHES["sector"][0] | {"radii": [0.2, 0.1]}},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 import runpy
@@ -57,6 +58,43 @@ def test_every_python_of_the_classifiers_is_tested():
     assert PROJECT["requires-python"] == f">={said[0]}"
 
 
+def unpinned(text: str) -> list[str]:
+    """Return the actions that a workflow names by a tag, which may move, or without the release of their commit."""
+    uses = re.findall(r"uses: *(.*)", text)
+    return [use for use in uses if not re.fullmatch(r"[\w.-]+/[\w./-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+", use)]
+
+
+@pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.name)
+def test_actions_are_pinned_to_commits(path):
+    text = path.read_text(encoding="utf-8")
+    assert "uses:" in text
+    assert unpinned(text) == []
+
+
+@pytest.mark.parametrize("use", ["actions/checkout@v4", f"actions/checkout@{'a' * 40}", "actions/checkout"])
+def test_actions_by_tag_are_found(use):
+    """Negative control."""
+    assert unpinned(f"      - uses: {use}\n") == [use]
+
+
+def test_updates_cover_what_is_pinned():
+    kinds = {one["package-ecosystem"] for one in read(ROOT / ".github" / "dependabot.yml")["updates"]}
+    assert {"github-actions", "docker"} <= kinds
+
+
+# SHA-256 of the files in three 0.180.0 on npm.
+VENDORED = {
+    "LICENSE-three.txt": "bfe119ea4fd413f5f7ca3fcd63adb0c4a073ed39daa2fe7d3e6b769e21272601",
+    "three.core.min.js": "61ba0df005b05991361d040d8ff670e1aadfd0ce7aeebd1fdb0725957a8957de",
+    "three.module.min.js": "e2b5ee6bccd38fd6d8a2428546b83c5f2426d84b152ef82be8055556e3b40eb6",
+}
+
+
+def test_files_of_third_parties_are_those_published():
+    folder = ROOT / "src" / "stridula" / "app" / "page" / "vendor"
+    assert {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.iterdir()} == VENDORED
+
+
 def misfits(schema: str, path: Path) -> str:
     """Return the output on a file that does not fit its published schema, empty if it does."""
     done = CliRunner().invoke(check_jsonschema.main, ["--builtin-schema", f"vendor.{schema}", str(path)])
@@ -67,6 +105,7 @@ def misfits(schema: str, path: Path) -> str:
 SCHEMAS = [
     *[("github-workflows", path) for path in WORKFLOWS],
     *[("github-issue-forms", path) for path in FORMS],
+    ("dependabot", ROOT / ".github" / "dependabot.yml"),
     ("citation-file-format", ROOT / "CITATION.cff"),
 ]
 

@@ -32,6 +32,9 @@ MOST_ELEMENTS, MOST_MODES, MOST_CONTACTS = 100, 400, 100
 MOST_OF_SYSTEMS = 1500
 # Elements of a generated mesh, and nodes of a mesh or a profile, whose modes are computed within a minute.
 MOST_OF_MESH, MOST_NODES = 4000, 20_000
+# Degrees of freedom of a body of revolution in all orders, and nodes of a mesh times the square of its modes, whose
+# modes are computed within a minute.
+MOST_UNKNOWNS, MOST_SEARCHED = 500_000, 2e9
 # Shortest step allowed in a scenario [s].
 SHORTEST_STEP = 1e-7
 
@@ -131,9 +134,9 @@ def playable(case: str, text: str | None, overrides: Mapping[str, Any]) -> Playa
     changed, problems = overridden(tables, dict(kinds_first))
     _check_no_files(changed)
     _check_size(changed)
-    scenario = scenario_of_tables(changed, problems)
+    scenario = scenario_of_tables(changed, problems, _check_system)
     _check_step(scenario)
-    _check_system(scenario.system)
+    _check_modes(scenario.system)
     return Playable(scenario, _in_full(scenario, changed), case if text is None else text, before)
 
 
@@ -143,13 +146,13 @@ def _given(case: str, text: str | None) -> tuple[dict[str, Any], dict[str, Any] 
     tables = read_tables(case) if text is None else tables_of_text(text, "the scenario")
     _check_size(tables)
     try:
-        scenario = scenario_of_tables(tables, [])
+        scenario = scenario_of_tables(tables, [], _check_system)
     except ScenarioError:
         # Problems are reported after values are set.
         return tables, None
     if _is_pair(scenario.system):
         return tables, None
-    _check_system(scenario.system)
+    _check_modes(scenario.system)
     full = {"title": scenario.title, "description": scenario.description} | _in_full(scenario, tables)
     return full, full
 
@@ -201,7 +204,7 @@ def _check_size(tables: dict[str, Any]) -> None:
 
 
 def _check_system(system: System) -> None:
-    """Raise ScenarioError if a system is too large."""
+    """Raise ScenarioError if a system is too large, before the modes of its bodies are computed."""
     if len(system.contacts) > MOST_CONTACTS:
         many = len(system.contacts)
         raise ScenarioError([f"contacts must be at most {MOST_CONTACTS} to be played, got {many}"])
@@ -211,12 +214,26 @@ def _check_system(system: System) -> None:
             raise ScenarioError([f"track must have at most {MOST_MODES} modes to be played, got {modes}: lower cutoff"])
         return
     for body in system.bodies:
-        # Checked before the modes are computed.
         nodes = len(body.mesh.nodes) if hasattr(body, "mesh") else 0
         if nodes > MOST_NODES:
             name = system.body_name(body)
             told = f"{name} must have at most {MOST_NODES} nodes to be played, got {nodes}: take a coarser mesh"
             raise ScenarioError([told])
+        unknowns = getattr(body, "unknowns", 0)
+        if unknowns > MOST_UNKNOWNS:
+            told = f"must have at most {MOST_UNKNOWNS} degrees of freedom in all orders to be played, got {unknowns}"
+            raise ScenarioError([f"{system.body_name(body)} {told}: lower cutoff"])
+        modes = getattr(body, "expected_modes", 0.0)
+        most = min(MOST_OF_SYSTEMS, math.sqrt(MOST_SEARCHED / max(nodes, 1)))
+        if modes > most:
+            told = f"must have at most {most:.0f} modes to be played, got {modes:.0f} or more: lower cutoff"
+            raise ScenarioError([f"{system.body_name(body)} {told}"])
+
+
+def _check_modes(system: System) -> None:
+    """Raise ScenarioError if the bodies of a system have too many modes."""
+    if _is_pair(system):
+        return
     modes = sum(body.modes().count for body in system.bodies)
     if modes > MOST_OF_SYSTEMS:
         raise ScenarioError([f"bodies must have at most {MOST_OF_SYSTEMS} modes to be played, got {modes}"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 import time as clock
 from collections.abc import Callable, Coroutine
 from contextlib import suppress
@@ -13,6 +14,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from ..arrays import Array
 from ..checks import ArgumentError
+from ..long_tasks import GivenUp, until
 from ..plot.colours import REGIME_COLOURS
 from ..records.by_surface import groups
 from ..scenarios.errors import ScenarioError
@@ -49,6 +51,8 @@ MOMENT, SHORTEST = 1.0, 0.2
 KNOWN, ENOUGH = 0.6, 48
 # Time after which a page without a first message is disconnected [s].
 HURRY = 10.0
+# Most messages that wait while one is answered.
+WAITING = 16
 # Codes of a socket that closed without a code, and of one whose page sent nothing.
 GONE, SILENT = 1006, 4408
 
@@ -70,6 +74,9 @@ class Session:
         self.scene: Scene | None = None
         self.source, self.repeats = "pressure", True
         self._tasks: dict[str, asyncio.Task[None]] = {}
+        # Messages that wait, and whether the page has gone, after which threads end.
+        self._messages: asyncio.Queue[str | Exception] = asyncio.Queue(WAITING)
+        self._gone = threading.Event()
         # Samples requested since a time, and samples given.
         self._began, self._played, self._given = clock.monotonic(), 0, 0
         # Hash of the last drawing.
@@ -94,18 +101,46 @@ class Session:
         )
         try:
             patience: float | None = HURRY
+            self._do("listening", self._listening())
             while True:
                 try:
-                    heard = await asyncio.wait_for(self._heard(), patience)
+                    heard = await asyncio.wait_for(self._messages.get(), patience)
                     patience = None
+                    if isinstance(heard, Exception):
+                        raise heard
                     await self._answer(message_of(heard))
                 except ValueError as error:
                     await self._tell("problem", problems=_lines(error))
         except TimeoutError:
             await self.socket.close(SILENT, f"a page must send a message within {HURRY:g} s")
         finally:
+            self._gone.set()
             for task in self._tasks.values():
                 task.cancel()
+
+    async def _listening(self) -> None:
+        """Receive messages, also while one is answered, so that a page that leaves is noticed at once."""
+        heard: str | Exception
+        while not self._gone.is_set():
+            try:
+                heard = await self._heard()
+            except ArgumentError as error:
+                heard = error
+            except WebSocketDisconnect as error:
+                self._gone.set()
+                heard = error
+            await self._messages.put(heard)
+
+    async def _in_thread(self, function: Callable[..., Result], *words: Any) -> Result:
+        """Return the result of a function from a thread, whose long work ends when the page has gone."""
+        try:
+            return await asyncio.to_thread(until, self._gone, function, *words)
+        except GivenUp:
+            raise WebSocketDisconnect(GONE) from None
+
+    async def _in_time(self, is_quick: bool, function: Callable[..., Result], *words: Any) -> Result:
+        """Return the result of a function, from a thread unless it is quick: threads wait for each other."""
+        return function(*words) if is_quick else await self._in_thread(function, *words)
 
     async def _heard(self) -> str:
         try:
@@ -146,7 +181,7 @@ class Session:
         refused: dict[str, list[str]] = {}
         came = clock.monotonic()
         try:
-            found = await _in_time(self._is_quick(scene), held, scene, self.scene)
+            found = await self._in_time(self._is_quick(scene), held, scene, self.scene)
             refused, played = found.refused, found.played
             if refused and self.scene is not None and _is_same(found.scene, self.scene):
                 raise ScenarioError(found.problems)
@@ -179,7 +214,7 @@ class Session:
         """Return another case or text as an instrument and its speed, None if it is the same."""
         if self.instrument is not None and self.instrument.is_of(played):
             return None
-        return await asyncio.to_thread(_begun, played, self.source)
+        return await self._in_thread(_begun, played, self.source)
 
     def _is_quick(self, scene: Scene) -> bool:
         """Return whether a scene takes less time to read than a part of its sound takes to play."""
@@ -219,7 +254,7 @@ class Session:
         if other is None:
             assert self.instrument is not None
             is_quick = self.instrument.played.is_fast and played.system.bodies == self.instrument.played.system.bodies
-            goes_on, speed = await _in_time(is_quick, _changed, self.instrument, played, revision, kept)
+            goes_on, speed = await self._in_time(is_quick, _changed, self.instrument, played, revision, kept)
         else:
             (begun, speed), goes_on = other, False
             if self.instrument is None:
@@ -382,11 +417,6 @@ async def _sent(sending: Coroutine[Any, Any, None]) -> None:
         await sending
     except RuntimeError:
         raise WebSocketDisconnect(GONE) from None
-
-
-async def _in_time(is_quick: bool, function: Callable[..., Result], *words: Any) -> Result:
-    """Return the result of a function, from a thread unless it is quick: threads wait for each other."""
-    return function(*words) if is_quick else await asyncio.to_thread(function, *words)
 
 
 def _begun(played: Playable, source: str) -> tuple[Instrument, float | None]:

@@ -51,6 +51,9 @@ LARGEST = 1e100
 STRAIGHT = 1e-6
 # A free ring of order n bends like a beam of n - 1 waves or more in length.
 ORDERS_MORE = 2
+# Most degrees of freedom in all orders round the axis together: a few minutes of work; and with cells that are chosen
+# for the shortest waves.
+MOST_UNKNOWNS, MOST_CHOSEN = 20_000_000, 400_000
 
 
 @hashed_once
@@ -190,6 +193,7 @@ class AxisymmetricBody(HasCard):
         object.__setattr__(self, "residual_at", _places(self.residual_at))
         # All fields are final, so from here on it can be hashed.
         self._check_held()
+        self._check_unknowns()
         for number, place in enumerate(self.residual_at):
             if self.mesh.cell_at(*place) is None:
                 raise ArgumentError(f"residual_at[{number}]", "be (r, z) in the profile", place)
@@ -239,6 +243,11 @@ class AxisymmetricBody(HasCard):
         share = -1.0 / (sign + c)
         first = [1.0 + sign * a * a * share, sign * a * b * share, -sign * a]
         return np.array([first, [a * b * share, sign + b * b * share, -b], self.axis]) + 0.0
+
+    @property
+    def unknowns(self) -> int:
+        """Degrees of freedom in all orders round the axis together, whose modes are searched for."""
+        return self.mesh.unknowns * (self._highest_order + 1)
 
     @property
     def total_mass(self) -> float:
@@ -398,6 +407,15 @@ class AxisymmetricBody(HasCard):
                 choice(name, one.place, self.mesh.place_names)
             if not len(one.sides(self.mesh)):
                 raise ArgumentError(name, "hold a side of a cell or more", got=f"none at {brief(one.place)}")
+
+    def _check_unknowns(self) -> None:
+        """Raise ValueError, before anything is computed, if the search for modes would take too long."""
+        unknowns, chosen = self.unknowns, self.profile.follows_waves
+        most = MOST_CHOSEN if chosen else MOST_UNKNOWNS
+        if unknowns > most:
+            way = "or give the profile a size" if chosen else "or take a coarser mesh"
+            words = f"{self.cutoff!r} Hz, which has {unknowns} in {self._highest_order + 1} orders: lower it, {way}"
+            raise ArgumentError("cutoff", f"leave at most {most} degrees of freedom", self.cutoff, got=words)
 
     def _cell(self, thickness: float, region: str) -> float:
         """Return the largest side of the cells of parts of a thickness in a region [m]."""

@@ -27,6 +27,7 @@ from .finite_elements import (
     element_mass,
     element_stiffness,
 )
+from .matrix_input import numbers
 from .modes import BodyPoint, Modes, hashed_once
 from .prism_surfaces import beam_surface, has_outline
 from .sections import SHORTEST_WAVE, Circle, Material, Rectangle, Section
@@ -222,8 +223,11 @@ class FiniteElementBeam(HasCard):
 
     def modal_coordinates(self, nodal: Array, held_x: bool = False) -> Array:
         """Return ``Phi^T M x`` of the displacements or velocities x of the nodes, shape (modes,)."""
+        values, size = numbers("nodal", nodal), 3 * (self.elements + 1)
+        if values.shape[:1] != (size,):
+            raise ArgumentError("nodal", f"have the shape ({size},)", nodal, got=values.shape)
         reduced = _reduced(self, held_x)
-        return np.asarray(reduced.shapes.T @ (reduced.mass @ nodal))
+        return np.asarray(reduced.shapes.T @ (reduced.mass @ values))
 
     def root_reaction(self, held_x: bool = False) -> RootReaction:
         """Return the force of the root's support as a function of the motion, from the balance of the whole beam."""

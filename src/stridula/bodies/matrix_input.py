@@ -64,8 +64,9 @@ def numbers(name: str, value: Any) -> Array:
         value.check_format(full_check=True)
     try:
         array = value.toarray() if scipy.sparse.issparse(value) else np.array(value)
-    except ValueError as error:
-        raise ArgumentError(name, "be an array of numbers", value, got=f"a ragged {type(value).__name__}") from error
+    except (ValueError, TypeError) as error:
+        kind = "a ragged" if isinstance(error, ValueError) else "a"
+        raise ArgumentError(name, "be an array of numbers", value, got=f"{kind} {type(value).__name__}") from error
     if array.dtype.kind == "c":
         raise ArgumentError(name, "be real", value, got="complex numbers")
     if array.dtype.kind not in "iuf":

@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError
 from ..declared import Name, Number, check_declared
+from .matrix_input import numbers
 from .modes import BodyPoint, Modes
 from .named_points import NamedPoints
 
@@ -77,7 +78,7 @@ class PointMass(NamedPoints):
 
     def modal_coordinates(self, vector: Any) -> Array:
         """Return the modal coordinates of a displacement [m] or a velocity [m/s] along (x, y), shape (2,)."""
-        values = np.asarray(vector)
-        if values.dtype.kind not in "iuf" or values.shape != (2,) or not np.isfinite(values).all():
+        values = numbers("vector", vector)
+        if values.shape != (2,) or not np.isfinite(values).all():
             raise ArgumentError("vector", "be two finite numbers, along x and y", vector)
         return np.sqrt(self.mass) * values

@@ -15,7 +15,8 @@ from ..checks import ArgumentError
 
 # Distance below which two places are the same, relative to the profile's size.
 SAME_PLACE = 1e-9
-MOST_CELLS = 100_000
+# Most cells of a profile, and of one whose cells are not given.
+MOST_CELLS, MOST_MADE = 100_000, 10_000
 # Name of the only region of a profile, and of cells in no other region.
 BODY = "body"
 # Sides of the smallest box around a region.
@@ -59,6 +60,12 @@ class ProfileMesh:
         return np.unique(np.sort(_sides(self.cells).reshape(-1, 2)), axis=0)
 
     @property
+    def unknowns(self) -> int:
+        """Degrees of freedom of quadratic elements for each order round the axis."""
+        inside = len(self.cells) if self.cells.shape[1] == 4 else 0
+        return 3 * (len(self.nodes) + len(self.sides) + inside)
+
+    @property
     def volumes(self) -> Array:
         """Volume that each cell sweeps round the axis [m³], ``2 pi`` times its integral of r, shape (cells,)."""
         r, z = np.moveaxis(self.nodes[self.cells], -1, 0)
@@ -72,7 +79,7 @@ class ProfileMesh:
         _, which, times = np.unique(np.sort(sides), axis=0, return_inverse=True, return_counts=True)
         return np.asarray(sides[times[which.ravel()] == 1])
 
-    @property
+    @cached_property
     def thinnest(self) -> float:
         """Least thickness of the profile, along the normals at the middles of the sides of its outline [m]."""
         ends = self.nodes[self.outline]
@@ -229,17 +236,22 @@ def _first_crossing(nodes: Array, outline: Array, margin: float) -> int | None:
     a, b = nodes[outline[:, 0]], nodes[outline[:, 1]]
     length = np.linalg.norm(b - a, axis=1)
     low, high = np.minimum(a, b) - margin, np.maximum(a, b) + margin
+    # By their places along the longer side of the profile, so that only a few are near each.
+    axis = int(np.argmax(np.ptp(nodes, axis=0)))
+    order = np.argsort(low[:, axis], kind="stable")
+    begins = low[order, axis]
     for start in range(0, len(outline), SIDES_AT_ONCE):
-        rows = np.arange(start, min(start + SIDES_AT_ONCE, len(outline)))[:, None]
-        near = ((low[rows] <= high[None]) & (low[None] <= high[rows])).all(axis=2)
-        shared = (outline[rows][..., :, None] == outline[None][..., None, :]).any(axis=(2, 3))
-        first, second = np.nonzero(near & ~shared)
-        first = first + start
+        rows = order[start : start + SIDES_AT_ONCE, None]
+        others = order[None, start : np.searchsorted(begins, high[rows, axis].max(), side="right")]
+        near = ((low[rows] <= high[others]) & (low[others] <= high[rows])).all(axis=2)
+        shared = (outline[rows][..., :, None] == outline[others][..., None, :]).any(axis=(2, 3))
+        one, other = np.nonzero(near & ~shared)
+        first, second = rows[one, 0], others[0, other]
         if not first.size:
             continue
         meets = _straddles(a, b, length, first, second, margin) & _straddles(a, b, length, second, first, margin)
         if meets.any():
-            return int(first[meets][0])
+            return int(min(first[meets].min(), second[meets].min()))
     return None
 
 

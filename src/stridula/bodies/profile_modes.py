@@ -15,6 +15,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh, splu
 from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
+from ..long_tasks import check_wanted
 from ..ordinary import check_mode_count
 from .fourier_elements import FourierElements, U, V, W
 
@@ -105,6 +106,7 @@ def families(
         if order == 0:
             kinds = [Kind(0, (U, W), (COSINE,)), Kind(0, (V,), (SINE,))]
         for kind in kinds:
+            check_wanted()
             with threadpool_limits(1):
                 found.append(_family(elements, held, cutoff, kind, expected, residual_at))
             expected = int(np.isfinite(found[-1].squared).sum())
@@ -250,7 +252,12 @@ def _lowest_modes(shifted: Shifted, rigid: Array, cutoff: float, expected: int) 
         if size <= max(DENSE, 2 * wanted):
             squared, vectors = scipy.linalg.eigh(stiffness.toarray(), mass.toarray())
         else:
-            inverse = LinearOperator(stiffness.shape, matvec=shifted.solve)
+
+            def solved(vector: Array) -> Array:
+                check_wanted()
+                return shifted.solve(vector)
+
+            inverse = LinearOperator(stiffness.shape, matvec=solved)
             start = np.random.default_rng(0).standard_normal(size)
             squared, vectors = eigsh(stiffness, wanted, mass, sigma=shifted.shift, OPinv=inverse, v0=start)
         order = np.argsort(squared)[count:]

@@ -16,9 +16,11 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, brief, finite, instance, non_negative, positive
 from .modes import hashed_once
-from .profile_mesh import BODY, MOST_CELLS, SAME_PLACE, ProfileMesh, checked_mesh, lines, merged, overlap
+from .profile_mesh import BODY, MOST_MADE, SAME_PLACE, ProfileMesh, checked_mesh, lines, merged, overlap
 
 Range = tuple[float, float]
+# Whole numbers from here on are not exact as floats.
+LARGEST_WHOLE = 2**53
 # Largest side [m] of the cells of a part, given its thickness [m] and its region.
 Size = Callable[[float, str], float]
 
@@ -37,6 +39,10 @@ class Profile(Protocol):
     @property
     def size(self) -> float | None:
         """Largest side of its cells [m], None if it depends on the shortest waves."""
+
+    @property
+    def follows_waves(self) -> bool:
+        """Whether its cells are chosen for the shortest waves."""
 
     @property
     def region_names(self) -> tuple[str, ...]:
@@ -84,6 +90,11 @@ class RectangleProfile:
             (first, _), (second, _) = (self.rectangles[number] for number in shared)
             raise ArgumentError("rectangles", "not overlap", got=f"{first!r} and {second!r} with an area in common")
         self.mesh(_any_size)
+
+    @property
+    def follows_waves(self) -> bool:
+        """Whether its cells are chosen for the shortest waves."""
+        return self.size is None
 
     @property
     def region_names(self) -> tuple[str, ...]:
@@ -179,6 +190,11 @@ class LineProfile:
         self.mesh(_any_size)
 
     @property
+    def follows_waves(self) -> bool:
+        """Whether its cells are chosen for the shortest waves."""
+        return self.size is None
+
+    @property
     def region_names(self) -> tuple[str, ...]:
         """Name of its only region."""
         return (BODY,)
@@ -228,6 +244,7 @@ class MeshProfile:
 
     shape: ClassVar[str] = "mesh"
     size: ClassVar[float | None] = None
+    follows_waves: ClassVar[bool] = False
     nodes: Any
     cells: Any
     regions: Any = field(default_factory=dict)
@@ -367,13 +384,14 @@ def _sequence(name: str, values: Any) -> list[Any]:
 
 def _numbers(name: str, values: Any, kind: type) -> Array:
     try:
-        given = np.asarray(values)
-        found: Array = given.astype(kind)
+        given: Array | None = np.asarray(values)
     except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(name, "be an array of numbers", got=brief(values)) from None
-    if kind is int and not np.array_equal(found, given):
+        given = None
+    if given is None or given.dtype.kind not in "iuf":
+        raise ArgumentError(name, "be an array of numbers", got=brief(values))
+    if kind is int and not ((given == np.round(given)) & (np.abs(given) < LARGEST_WHOLE)).all():
         raise ArgumentError(name, "be whole numbers", got=brief(values))
-    return found
+    return given.astype(kind)
 
 
 def _check_division(regions: Mapping[str, Array], cells: int) -> None:
@@ -387,8 +405,10 @@ def _any_size(thickness: float, region: str) -> float:
 
 
 def _check_count(count: float) -> None:
-    if not count <= MOST_CELLS:
-        raise ArgumentError("size", f"leave at most {MOST_CELLS} cells", got=f"{count:.6g} and more")
+    if not count <= MOST_MADE:
+        number = f"{count:.0f}" if count < 1e9 else f"{count:.3g}"
+        got = f"{number} and more: give a larger size, or a larger thickness"
+        raise ArgumentError("size", f"leave at most {MOST_MADE} cells", got=got)
 
 
 PROFILES = (RectangleProfile, LineProfile, MeshProfile)

@@ -16,9 +16,11 @@ import scipy.linalg
 import scipy.sparse
 
 from ..arrays import Array
-from ..checks import ArgumentError, at_most, choice, count, instance, listed, positive
-from ..declared import Frequency, Own
+from ..checks import ArgumentError, at_most, choice, count, instance, listed
+from ..declared import FREQUENCY, Frequency, Own
+from ..long_tasks import check_wanted
 from ..ordinary import of_ordinary_size
+from . import sparse_reduction
 from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .cards import FEW
 from .damping import DampingLaw, checked_damping
@@ -41,6 +43,8 @@ DIRECTIONS = "xyz"
 FASTEST = 30e3
 # Rigid motions that move held nodes by less than this share of the size of a body count as free.
 RIGID = 1e-9
+# Expected modes over the most that are searched for, from which a search is not begun.
+FAR = 4.0
 
 
 @dataclass(frozen=True)
@@ -124,7 +128,7 @@ class SolidBody(NamedPoints):
         for word in ("residual_flexibility", "linear"):
             instance(word, getattr(self, word), bool)
         if self.cutoff is not None:
-            self._set("cutoff", positive("cutoff", self.cutoff))
+            self._set("cutoff", FREQUENCY.check("cutoff", self.cutoff))
         self._set("damping", checked_damping(self.damping))
         self._set("materials", _materials(self.materials))
         _elements_of(self.materials, self.mesh)
@@ -205,6 +209,7 @@ class SolidBody(NamedPoints):
 
     def face_points(self, name: str) -> FacePoints:
         """Return the points of integration on a named part of its surface: places, areas and normals."""
+        choice("name", name, self.face_names or ("none",))
         return face_points(self.mesh, name)
 
     def at(self, position: str | Sequence[float]) -> BodyPoint:
@@ -270,6 +275,11 @@ class SolidBody(NamedPoints):
     def surface(self, frequency: float = HIGHEST) -> PointSurface:
         """Return the outer surface as points with its mode shapes, fine enough for sound up to a frequency [Hz]."""
         return _surface(self, largest_part(frequency))
+
+    @property
+    def expected_modes(self) -> float:
+        """Lower bound of the number of modes below the cutoff; zero without one."""
+        return 0.0 if self.cutoff is None else _expected(self, float(_assembled(self)[0].sum()))
 
     def modes(self, held_x: bool = False) -> Modes:
         """Return the modes; `held_x` is for bodies with a driven end and must be false."""
@@ -387,6 +397,8 @@ def _reduced(body: SolidBody) -> SolidReduction:
 def _searched(body: SolidBody) -> SolidReduction:
     node_mass, stiffness = _assembled(body)
     mesh, free = body.mesh, body._free
+    if body.cutoff is not None and free.sum() > LARGEST_SIZE:
+        _check_modes(body, float(node_mass.sum()))
     mass = scipy.sparse.kron(node_mass, scipy.sparse.eye_array(3), format="csr")
     uniform = np.tile(np.eye(3), (len(mesh.nodes), 1))
     pulled = mass @ uniform
@@ -416,11 +428,33 @@ def _surface(body: SolidBody, largest: float) -> PointSurface:
     return cut_faces(body.mesh, shapes, largest)
 
 
+def _check_modes(body: SolidBody, mass: float) -> None:
+    """Raise ValueError if far too many modes lie below the cutoff, before any is searched for."""
+    expected = _expected(body, mass)
+    if expected > FAR * sparse_reduction.MOST_MODES:
+        words = f"leave at most {sparse_reduction.MOST_MODES} modes of a mesh"
+        got = f"{body.cutoff:.6g} Hz, below which there are {at_most(expected, 2)} or more"
+        raise ArgumentError("cutoff", words, body.cutoff, got=got)
+
+
+def _expected(body: SolidBody, mass: float) -> float:
+    """Return a lower bound of the number of modes below the cutoff.
+
+    Shear waves alone have ``V 8 pi / 3 (f / c)³`` modes below f in a volume V (Debye 1912), and thin bodies more; the
+    heaviest and the fastest material give a lower bound.
+    """
+    materials = list(body.materials.values()) if isinstance(body.materials, Mapping) else [body.materials]
+    fastest = max(one.young / (2.0 * (1.0 + one.poisson) * one.density) for one in materials) ** 0.5
+    volume = mass / max(one.density for one in materials)
+    return float(volume * 8.0 * np.pi / 3.0 * ((body.cutoff or 0.0) / fastest) ** 3)
+
+
 def _on_faces(body: SolidBody) -> Array:
     """Return unit forces at the points of contact faces, along x, y and z each, shape (3 nodes, forces)."""
     places = [place for name in body.contact_faces for place in body.face_points(name).place.tolist()]
     forces = np.zeros((len(body.mesh.nodes), 3, len(places), 3))
     for number, place in enumerate(places):
+        check_wanted()
         nodes, shares = located(body.mesh, tuple(place))
         for direction in range(3):
             forces[nodes, direction, number, direction] = shares

@@ -24,7 +24,8 @@ from .solid_elements import check_elements
 from .solid_kinds import KINDS, ElementKind
 
 # Factors of meshes with more nodes exceed usual memory.
-MOST_NODES = 1_000_000
+# Twice those of the largest body, parts of which may be held.
+MOST_NODES = 200_000
 # Largest distance of a point from its node, relative to the size of a mesh.
 TOLERANCE = 1e-3
 
@@ -200,6 +201,7 @@ class SolidMesh:
         if not start < end <= start + 2.0 * np.pi * (1.0 + 1e-12):
             raise ArgumentError("angles", "increase, by at most 2 pi in all", angles)
         heights = _heights(height)
+        _check_nodes("divisions", (*parts[:2], parts[2] * len(heights)), divisions)
         return cls(**solid_shapes.sector((inner, outer), (start, end), heights, parts, axis))
 
     @classmethod
@@ -233,7 +235,10 @@ class SolidMesh:
         if corners.ndim != 2 or corners.shape[1] != 4 or not len(corners):
             raise ArgumentError("quadrilaterals", "have the shape (elements, 4)", quadrilaterals, got=corners.shape)
         heights = _heights(height)
-        layers = count("layers", layers, high=MOST_NODES // len(corners) // len(heights))
+        layers = count("layers", layers, high=MOST_NODES // len(corners) // len(heights) + 1)
+        nodes = (len(places) + len(corners)) * layers * len(heights)
+        if nodes > MOST_NODES:
+            raise ArgumentError("layers", f"make at most {MOST_NODES} nodes", layers, got=f"{nodes} and more")
         return cls(**solid_shapes.extrusion(places, corners, heights, layers, axis))
 
     @property
@@ -283,6 +288,7 @@ class SolidMesh:
 
     def named(self, name: str, nodes: Any) -> SolidMesh:
         """Return the mesh with an additional set of nodes, such as ``np.flatnonzero(mesh.nodes[:, 2] == 0.0)``."""
+        instance("name", name, str)
         return replace(self, node_sets={**self.node_sets, name: nodes})
 
     def face(self, name: str) -> Face:
@@ -469,12 +475,18 @@ def _heights(given: Any) -> dict[str, float]:
 
 
 def _divisions(values: Any) -> tuple[int, int, int]:
-    """Return numbers of elements along three directions, after a check of their product."""
+    """Return numbers of elements along three directions, after a check of the nodes that they make."""
     parts = _three("divisions", values, count)
-    elements = math.prod(parts)
-    if elements > MOST_NODES:
-        raise ArgumentError("divisions", f"make at most {MOST_NODES} elements", values, got=elements)
+    _check_nodes("divisions", parts, values)
     return parts
+
+
+def _check_nodes(name: str, parts: tuple[int, int, int], value: Any) -> None:
+    """Raise ValueError if a grid of hexahedra of 20 nodes has too many nodes."""
+    corners = math.prod(part + 1 for part in parts)
+    nodes = corners + sum(corners // (part + 1) * part for part in parts)
+    if nodes > MOST_NODES:
+        raise ArgumentError(name, f"make at most {MOST_NODES} nodes", value, got=nodes)
 
 
 def place_of(word: str, values: Any) -> tuple[float, float, float]:

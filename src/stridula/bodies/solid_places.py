@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError
+from ..long_tasks import check_wanted
 from .solid_elements import shape_functions
 from .solid_kinds import ElementKind
 
@@ -98,6 +99,7 @@ def located(mesh: SolidMesh, place: tuple[float, float, float]) -> tuple[Array, 
     ValueError
         If it is outside of the mesh.
     """
+    check_wanted()
     kind, there = mesh.element_kind, np.array(place)
     low, high = _boxes(mesh)
     size = (high - low).max(axis=1)

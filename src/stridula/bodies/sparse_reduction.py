@@ -12,6 +12,7 @@ from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least
+from ..long_tasks import check_wanted
 from .damping import check_damping_count, damping_rates
 from .factorisation import Solve, factorised
 from .matrix_files import LARGEST_SIZE
@@ -173,6 +174,7 @@ def _static_answers(stiffness: Any, solve: Solve, forces: Array, kept: Array, mo
     goal = float(np.finfo(float).eps) * np.linalg.norm(forces, axis=0)
     best = np.full(forces.shape[1], np.inf)
     for _ in range(MOST_STEPS):
+        check_wanted()
         guess = solve(left)
         guess -= kept @ (moved.T @ guess)
         now = np.sum(left * guess, axis=0)
@@ -258,6 +260,7 @@ def _search(
     moved = mass @ found
 
     def inverse(vector: Array) -> Array:
+        check_wanted()
         answer = solve(vector - moved @ (found.T @ vector))
         return answer - found @ (moved.T @ answer)
 

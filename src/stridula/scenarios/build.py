@@ -92,8 +92,8 @@ class Builder:
         self.places: dict[str, Place] = {"slider": ("slider",), "track": ("track",)}
         self.bodies: dict[str, Any] = {}
 
-    def system(self) -> System:
-        """Return the system."""
+    def system(self, check: Callable[[System], None] | None = None) -> System:
+        """Return the system, after a further check of it, if given, before the modes of its bodies are computed."""
         if "bodies" in self.tables:
             contacts, connections = self._general()
         else:
@@ -103,6 +103,8 @@ class Builder:
         with self._within():
             system = System(contacts[0] if len(contacts) == 1 else contacts, drives, connections)
         self._stop_at_problems()
+        if check is not None:
+            check(system)
         for name, body in self.bodies.items():
             if has_root(body) or body.kind in MESHED:
                 with self._within(*self.places.get(name, ("bodies", name))):

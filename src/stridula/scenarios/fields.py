@@ -178,7 +178,7 @@ class DampingTable(_Kind):
 
     def read(self, value: Any) -> Any:
         form = value.get("form", Rayleigh.form)
-        if form not in self.forms:
+        if not isinstance(form, str) or form not in self.forms:
             raise _refused(f"have a form that is one of {', '.join(self.forms)}")
         parameters = declared(self.forms[form])
         if value.keys() - {"form"} != {parameter.name for parameter in parameters}:
@@ -672,8 +672,8 @@ Mass = Annotated[float, Quantity("kg", above=0.0)]
 Length = Annotated[float, Quantity("m", above=0.0)]
 Distance = Annotated[float, Quantity("m", least=0.0)]
 Angle = Annotated[float, Quantity("rad")]
-Frequency = Annotated[float, Quantity("Hz", above=0.0)]
-FrequencyOrAll = Annotated[float | str, QuantityOrWord(Quantity("Hz", above=0.0), "all")]
+Frequency = Annotated[float, Quantity("Hz", above=0.0, below=1e12)]
+FrequencyOrAll = Annotated[float | str, QuantityOrWord(Quantity("Hz", above=0.0, below=1e12), "all")]
 Time = Annotated[float, Quantity("s", above=0.0)]
 Velocity = Annotated[float, Quantity("m/s")]
 AnyAcceleration = Annotated[float, Quantity("m/s2")]

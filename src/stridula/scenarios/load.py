@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -117,7 +117,9 @@ def load_scenario(name_or_path: str | Path | xr.Dataset, overrides: Mapping[str,
     return scenario_of_tables(written, problems)
 
 
-def scenario_of_tables(written: dict[str, Any], problems: Sequence[str] = ()) -> Scenario:
+def scenario_of_tables(
+    written: dict[str, Any], problems: Sequence[str] = (), check: Callable[[System], None] | None = None
+) -> Scenario:
     """Check the tables of a scenario and return the scenario.
 
     Parameters
@@ -126,6 +128,8 @@ def scenario_of_tables(written: dict[str, Any], problems: Sequence[str] = ()) ->
         The tables as in a file, those of its base merged in.
     problems : sequence of str, optional
         Problems of the tables known beforehand.
+    check : callable, optional
+        Raises if a system is refused, before the modes of its bodies are computed.
 
     Raises
     ------
@@ -133,7 +137,7 @@ def scenario_of_tables(written: dict[str, Any], problems: Sequence[str] = ()) ->
         With every problem found.
     """
     checked, builder = _checked(written, problems)
-    system = builder.system()
+    system = builder.system(check)
     simulation = checked.simulation
     return Scenario(
         title=checked.title,
