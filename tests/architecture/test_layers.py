@@ -330,5 +330,4 @@ def opens_files(path: Path) -> bool:
 
 
 def test_only_disk_opens_files():
-    # The reader of decks asks disk before it does.
-    assert set(violating(opens_files)) - {"bodies.solid_files"} == {"disk"}
+    assert set(violating(opens_files)) == {"disk"}

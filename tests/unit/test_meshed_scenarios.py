@@ -632,7 +632,7 @@ BAD_SOLIDS = {
     "no such node": ({"points": {"p": 99}}, "bodies.a.points.p must be at most 19, got 99"),
     "no such set": ({"points": {"p": "q"}}, "bodies.a.points.p must be one of none, got 'q'"),
     "no file": ({"mesh": {"shape": "file", "file": "none.msh"}}, "none.msh': no such file or directory"),
-    "another file": ({"mesh": {"shape": "file", "file": "case.toml"}}, "bodies.a.mesh.file must end in .inp, .msh, "),
+    "another file": ({"mesh": {"shape": "file", "file": "case.toml"}}, "bodies.a.mesh.file must end in .inp, .bdf, "),
     "another shape": (
         {"mesh": {"shape": "ring"}},
         "bodies.a.mesh.shape must be one of block, sector, extrusion, file, elements, got 'ring'",

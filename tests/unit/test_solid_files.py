@@ -210,7 +210,7 @@ def test_elements_of_two_groups_stand_once_and_lonely_nodes_are_left_out(tmp_pat
         ("block.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n7\n1 0 0\n", "cannot read"),
         ("block.inp", "*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n", "cannot read"),
         ("block.inp", "*HEADING\nnothing\n", "got none"),
-        ("block.bdf", "GRID,1\n", "cannot read"),
+        ("block.bdf", "GRID,one\n", "cannot read"),
         ("block.vtu", "<VTKFile", "cannot read"),
         ("block.vtk", "no header", "cannot read"),
     ],

@@ -22,18 +22,22 @@ from ..extras import named_extras
 from .cut_elements import can_be_cut, cut_into_tetrahedra, triangles_of
 from .decks.abaqus import read_abaqus
 from .decks.deck import Deck, DeckError
+from .decks.nastran import read_nastran
 from .solid_kinds import KINDS, ElementKind, outer_faces
 
 LARGEST_FILE = 2 * 1024**3
 FORMATS = {
     ".msh": "gmsh",
-    ".bdf": "nastran",
-    ".nas": "nastran",
-    ".fem": "nastran",
     ".vtk": "vtk",
     ".vtu": "vtu",
 }
-DECKS: dict[str, Callable[[str | os.PathLike[str]], Deck]] = {".inp": read_abaqus}
+DECKS: dict[str, Callable[[str | os.PathLike[str]], Deck]] = {
+    ".inp": read_abaqus,
+    ".bdf": read_nastran,
+    ".nas": read_nastran,
+    ".fem": read_nastran,
+    ".dat": read_nastran,
+}
 # Kinds of cells by the beginnings of their names.
 _SOLID = ("tetra", "hexahedron", "wedge", "pyramid", "polyhedron", "VTK_LAGRANGE_TETRA", "VTK_LAGRANGE_HEXA")
 _SURFACE = ("triangle", "quad")
@@ -44,7 +48,15 @@ MOST_GROUPS = 1000
 
 @dataclass(frozen=True)
 class Cells:
-    """Cells of one kind, named as in meshio, and the indices of their points."""
+    """Cells of one kind.
+
+    Attributes
+    ----------
+    type : str
+        Name of the kind in meshio.
+    data : ndarray of int, shape (cells, nodes of one)
+        Indices of their points.
+    """
 
     type: str
     data: Array
@@ -390,10 +402,9 @@ def _grouped(held: Any, form: str) -> dict[str, dict[int, Array]]:
         return _of_gmsh(held)
     found: dict[str, dict[int, Array]] = {}
     for array, of_block in held.cell_data.items():
-        is_property = array == "nastran:ref"
         for at, values in enumerate(of_block):
             for value, those in _by_value(values):
-                found.setdefault(str(value) if is_property else f"{array} {value}", {})[at] = those
+                found.setdefault(f"{array} {value}", {})[at] = those
     if form in ("vtk", "vtu"):
         for array, values in held.point_data.items():
             for value, those in _by_value(values):
