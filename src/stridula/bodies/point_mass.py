@@ -78,7 +78,11 @@ class PointMass(NamedPoints):
 
     def modal_coordinates(self, vector: Any) -> Array:
         """Return the modal coordinates of a displacement [m] or a velocity [m/s] along (x, y), shape (2,)."""
-        values = numbers("vector", vector)
+        wrong = ArgumentError("vector", "be two finite numbers, along x and y", vector)
+        try:
+            values = numbers("vector", vector)
+        except ArgumentError:
+            raise wrong from None
         if values.shape != (2,) or not np.isfinite(values).all():
-            raise ArgumentError("vector", "be two finite numbers, along x and y", vector)
+            raise wrong
         return np.sqrt(self.mass) * values
