@@ -8,10 +8,13 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any, TypeVar
 
+import numpy as np
+
 from .checks import ArgumentError, counted, instance, listed
 from .connections import CONNECTIONS, Connection, ends, unit
 from .contact import PointContact, SurfaceContact, SurfacePoints
 from .contact.surface_points import surfaces_among
+from .doubtful import doubts_of_gap, warn_of
 from .drives import DRIVES, Drive, ImposedVelocity, InitialEquilibrium
 from .system_card import CLOSED, card_of, connection_words, lines_of
 
@@ -59,6 +62,7 @@ class System:
             raise ArgumentError(
                 "drives", "hold at most one InitialEquilibrium", self.drives, got=len(self._of_kind(InitialEquilibrium))
             )
+        warn_of(self.doubts)
 
     @cached_property
     def contacts(self) -> tuple[PointContact, ...]:
@@ -73,6 +77,17 @@ class System:
         whole: list[Any] = [one for one in given if hasattr(one, "areas")]
         alone: list[Any] = [one for one in given if not hasattr(one, "areas")]
         return (*whole, *surfaces_among(alone))
+
+    @property
+    def doubts(self) -> list[str]:
+        """Doubts about the gaps of its surfaces, each with the name of the surface."""
+        found = []
+        for face in self.faces:
+            gap = min(one.gap for one in face.contacts)
+            # Places of points are slower to find.
+            size = float(np.ptp(face.places, axis=0).max()) if gap > 0.0 else 0.0
+            found += [f"{face.name}: {words}" for words in doubts_of_gap(gap, size)]
+        return found
 
     @cached_property
     def bodies(self) -> tuple[Any, ...]:
