@@ -12,6 +12,8 @@ from pathlib import Path
 MODULUS, MEGA = (1e6, 2e12), 2e3
 # Size of a body [m] above which it is probably in millimetres.
 LARGEST_SIZE = 50.0
+# Distance of a face from its track, as a share of its size, from which it is probably misplaced.
+FARTHEST = 0.05
 # Files whose frames a warning passes over: this package, code made by dataclasses, decorators.
 _PASSED = (str(Path(__file__).parent), "<", contextlib.__file__)
 
@@ -37,6 +39,13 @@ def doubts_of_modulus(name: str, modulus: float) -> list[str]:
 def doubts_of_size(size: float) -> list[str]:
     """Return a doubt about the largest side of a body or a mesh [m], none if it is of ordinary size."""
     return [f"size of {size:.4g} m; did you mean mm?"] if size > LARGEST_SIZE else []
+
+
+def doubts_of_gap(gap: float, size: float) -> list[str]:
+    """Return a doubt about the least gap of a face [m] of a given size [m], none unless it is far from its track."""
+    if gap <= FARTHEST * size:
+        return []
+    return [f"nothing within {gap:.4g} m of the face, {size:.4g} m in size; did you mean to move it there?"]
 
 
 def _depth() -> int:

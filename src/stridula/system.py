@@ -8,18 +8,21 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any, TypeVar
 
-from .checks import ArgumentError, instance, listed
+import numpy as np
+
+from .checks import ArgumentError, counted, instance, listed
 from .connections import CONNECTIONS, Connection, ends, unit
 from .contact import PointContact, SurfaceContact, SurfacePoints
 from .contact.surface_points import surfaces_among
+from .doubtful import doubts_of_gap, warn_of
 from .drives import DRIVES, Drive, ImposedVelocity, InitialEquilibrium
-from .system_card import card_of, connection_words
+from .system_card import CLOSED, card_of, connection_words, lines_of
 
 T = TypeVar("T")
 PLACES = (PointContact, SurfaceContact)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class System:
     """Bodies in contact, with their connections and drives.
 
@@ -59,6 +62,7 @@ class System:
             raise ArgumentError(
                 "drives", "hold at most one InitialEquilibrium", self.drives, got=len(self._of_kind(InitialEquilibrium))
             )
+        warn_of(self.doubts)
 
     @cached_property
     def contacts(self) -> tuple[PointContact, ...]:
@@ -73,6 +77,17 @@ class System:
         whole: list[Any] = [one for one in given if hasattr(one, "areas")]
         alone: list[Any] = [one for one in given if not hasattr(one, "areas")]
         return (*whole, *surfaces_among(alone))
+
+    @property
+    def doubts(self) -> list[str]:
+        """Doubts about the gaps of its surfaces, each with the name of the surface."""
+        found = []
+        for face in self.faces:
+            gap = min(one.gap for one in face.contacts)
+            # Places of points are slower to find.
+            size = float(np.ptp(face.places, axis=0).max()) if gap > 0.0 else 0.0
+            found += [f"{face.name}: {words}" for words in doubts_of_gap(gap, size)]
+        return found
 
     @cached_property
     def bodies(self) -> tuple[Any, ...]:
@@ -226,10 +241,17 @@ class System:
         """Return a card with a drawing of its bodies and a list of its parts, without a long search for modes."""
         return card_of(self)
 
+    def __repr__(self) -> str:
+        """Return a line for each body, surface and other part, without a search for modes."""
+        return lines_of(self)
+
     def __str__(self) -> str:
         lines = [_body_line(self.body_name(body), body) for body in self.bodies]
         names = self.contact_names if len(self.contacts) > 1 else (self.contacts[0].name or "contact",)
-        lines += [_contact_line(name, contact) for name, contact in zip(names, self.contacts, strict=True)]
+        surfaces: dict[str, list[PointContact]] = {}
+        for name, contact in zip(names, self.contacts, strict=True):
+            surfaces.setdefault(contact.surface or name, []).append(contact)
+        lines += [_contact_line(name, *contacts) for name, contacts in surfaces.items()]
         lines += [f"joined   {connection_words(connection, self)}" for connection in self.connections]
         return "\n".join(lines + [f"drive    {drive}" for drive in self.drives])
 
@@ -254,7 +276,11 @@ def _body_line(name: str, body: Any) -> str:
     return f"{name:<8} {length}{mass}{lean}{damping}, {frequency.size} modes to {frequency.max():.4g} Hz{more}"
 
 
-def _contact_line(name: str, contact: PointContact) -> str:
+def _contact_line(name: str, contact: PointContact, *others: PointContact) -> str:
+    if contact.surface:
+        gaps = [one.gap if abs(one.gap) > CLOSED else 0.0 for one in (contact, *others)]
+        ends = dict.fromkeys(f"{gap:.3g}" for gap in (min(gaps), max(gaps)))
+        return f"{name:<8} {counted(len(gaps), 'point')}, gap {' to '.join(ends)} m, friction {contact.friction}"
     kind = " on a rigid track" if contact.rigid_track else " against a point"
     if contact.circle is not None:
         kind = f" of a circle of {contact.circle.length:.4g} m"

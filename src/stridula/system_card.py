@@ -14,21 +14,39 @@ from .lines import outlines_of
 
 # Length to which a rigid track is drawn to either side of a tip, as a share of the extent of the bodies.
 REACH = 0.25
+# Most lines for parts of a kind in the text of a system.
+MOST_LINES = 6
 # Largest gap that is due to rounding [m].
 CLOSED = 1e-12
 
 
 def card_of(system: Any) -> str:
     """Return the card of a system, without a long search for modes."""
-    contacts = _contacts(system)
-    facts: dict[str, str | Sequence[str]] = {
+    facts = _facts(system)
+    if len(facts["contacts"]) > 1:
+        facts["contacts"] = [f"{len(system.contacts)} in all", *facts["contacts"]]
+    strokes = _in_space(system) if system.is_spatial else _in_the_plane(system)
+    return card("System", facts, drawing(strokes, "outline of the system"))
+
+
+def lines_of(system: Any) -> str:
+    """Return a line for each part of a system; of many parts of a kind, the first ones and the number of the others."""
+    lines = ["System("]
+    for kind, words in _facts(system).items():
+        left = len(words) - MOST_LINES
+        shown, more = (words, []) if left <= 0 else (words[:MOST_LINES], [f"and {left} other {kind}"])
+        lines += [f"  {line}" for line in [*shown, *more]]
+    return "\n".join([*lines, ")"])
+
+
+def _facts(system: Any) -> dict[str, Sequence[str]]:
+    """Return a line for each part of a system, by kind."""
+    return {
         "bodies": [f"{system.body_name(body)}: {_body_words(body)}" for body in system.bodies],
-        "contacts": [f"{len(system.contacts)} in all", *contacts] if len(contacts) > 1 else contacts,
+        "contacts": _contacts(system),
         "connections": [connection_words(one, system) for one in system.connections],
         "drives": [_drive_words(drive, system) for drive in system.drives],
     }
-    strokes = _in_space(system) if system.is_spatial else _in_the_plane(system)
-    return card("System", facts, drawing(strokes, "outline of the system"))
 
 
 def _body_words(body: Any) -> str:

@@ -294,3 +294,37 @@ def test_ordinary_values_raise_no_warning():
     st.Material(1e6, 10.0)
     st.Material(1.2e12, 2.3e4)
     st.ModalBeam(STEEL, RECTANGLE, 50.0)
+
+
+# Faces far from their track.
+
+
+def pressed(above, gap=0.0):
+    """Return a block pressed on another one, from a height above it."""
+    bed = st.SolidBody(st.SolidMesh.block((0.04, 0.01, 0.04), (1, 1, 1)), STEEL, fixed=["bottom"], name="bed")
+    mesh = st.SolidMesh.block((0.02, 0.01, 0.02), (1, 1, 1)).moved((0.01, 0.01 + above, 0.01))
+    die = st.SolidBody(mesh, STEEL, fixed={"top": "xz"}, name="die")
+    face = st.SurfaceContact(die, "bottom", bed, "top", gap=gap, stiffness=1e12, name="sole")
+    spring = st.Spring(die.at("top"), stiffness=1e6, direction="y")
+    return lambda: st.System(face, [st.Force(die.at("top"), y=-10.0)], [spring])
+
+
+@pytest.mark.parametrize(("above", "gap"), [(0.02, 0.0), (0.0, 0.02)])
+def test_a_face_far_from_its_track_is_named(above, gap):
+    words = r"sole: nothing within 0\.02 m of the face, 0\.01155 m in size; did you mean to move it there\?"
+    with pytest.warns(st.DoubtfulValue, match=f"^{words}$") as caught:
+        system = pressed(above, gap)()
+    assert caught[0].filename == __file__
+    found = st.sliding_stability(system)
+    assert found.attrs["equilibrium"] == "lifted off"
+    assert "sole is open by 0.02 m" in found.attrs["notes"].split("; ")
+    again = st.System(system.contact, [*system.drives, st.InitialEquilibrium()], system.connections)
+    refused(
+        lambda: st.simulate(again, 1e-4),
+        "which sole is lifted off: press it down, or status='separated' starts it open; sole is open by 0.02 m$",
+    )
+
+
+def test_a_face_near_its_track_is_not_named(recwarn):
+    pressed(1e-4)()
+    assert not [one for one in recwarn if "nothing within" in str(one.message)]

@@ -9,7 +9,7 @@ import xarray as xr
 
 from ..arrays import Array
 from ..checks import count, instance, non_negative
-from ..linear.equilibrium import JAMMED, Equilibrium, find_equilibrium
+from ..linear.equilibrium import JAMMED, LIFTED_OFF, Equilibrium, find_equilibrium, open_words
 from ..linear.given import Status, Velocity, given_status, given_velocity
 from ..linear.modes import exponents_alone, modes_of, round_off
 from ..linear.structure import SLIDING, Structure
@@ -81,7 +81,8 @@ def sliding_stability(
         ``none``; ``at least one`` or ``none found`` where many contacts do not allow to try all their statuses; empty
         with `status`, as nothing is searched. ``attrs["violated"]`` has, in words, the inequalities that given statuses
         violate, such as a contact that pulls or one that is open below the surface; else it is empty.
-        ``attrs["notes"]`` has the parts that the model describes only roughly, as in a record of `simulate`.
+        ``attrs["notes"]`` has the parts that the model describes only roughly, as in a record of `simulate`, and the
+        distances of contacts and surfaces that have lifted off.
         ``attrs["round_off"]`` is the growth rate [1/s] up to which a mode does not count as unstable.
 
     Raises
@@ -197,7 +198,8 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
             data[name] = (("contact", "tangent"), both, attributes) if several else ("tangent", both[0], attributes)
     attributes = {"equilibrium": equilibrium.kind, "equilibria": equilibrium.found}
     attributes |= {"violated": "; ".join(equilibrium.violated), "round_off": round_off(structure)}
-    attributes["notes"] = "; ".join(notes_of(system, structure.arrays, AHEAD))
+    opened = open_words(structure, equilibrium) if equilibrium.kind == LIFTED_OFF else []
+    attributes["notes"] = "; ".join([*opened, *notes_of(system, structure.arrays, AHEAD)])
     return xr.Dataset(data, coordinates, attributes)
 
 

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, listed, positive
+from ..checks import ArgumentError, counted, listed, positive
 
 # Default highest frequency of sound that surfaces are cut for [Hz], parts of a surface per wavelength, and the speed
 # of sound [m/s].
@@ -39,7 +39,7 @@ OPTIONAL = {"corners", "owners"}
 POINTS_A_WAVE, LEAST_ROUND = 8, 24
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PointSurface:
     """The outer surface of a body as points, each in the middle of a patch.
 
@@ -74,6 +74,9 @@ class PointSurface:
         if self.owners is None:
             object.__setattr__(self, "owners", np.arange(len(self.points)))
 
+    def __repr__(self) -> str:
+        return f"PointSurface({_size_of(self, 'point')})"
+
     @property
     def as_points(self) -> PointSurface:
         """The surface as points: itself."""
@@ -101,7 +104,7 @@ class PointSurface:
         return _content(self)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class RingSurface:
     """The outer surface of a body of revolution as rings, two close together over each part of its profile.
 
@@ -132,6 +135,9 @@ class RingSurface:
     sides: Array
     frame: Array
     origin: Array
+
+    def __repr__(self) -> str:
+        return f"RingSurface({_size_of(self, 'ring')})"
 
     @property
     def content(self) -> tuple[bytes, ...]:
@@ -198,6 +204,11 @@ def check_surface(name: str, surface: BodySurface, modes: int) -> None:
     owners = getattr(surface, "owners", None)
     if owners is not None and not np.array_equal(np.unique(owners), np.arange(len(surface.normals))):
         raise ArgumentError(f"{name}.owners", "have the number of each point, from 0", got=np.unique(owners).tolist())
+
+
+def _size_of(surface: BodySurface, part: str) -> str:
+    rows, modes = np.shape(surface.shapes)
+    return f"{counted(rows, part)}, {counted(modes, 'mode')}"
 
 
 def _content(surface: BodySurface) -> tuple[bytes, ...]:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, listed
+from ..checks import ArgumentError, counted, listed
 from .solid_kinds import outer_faces
 from .solid_mesh import SolidMesh
 
@@ -17,7 +17,7 @@ from .solid_mesh import SolidMesh
 FEWEST_ANGLES, ANGLES_OF_WAVE = 60, 5
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class DrawnSurface:
     """The surface of a body as polygons.
 
@@ -34,6 +34,9 @@ class DrawnSurface:
     place: Array
     polygons: Array
     shapes: Array
+
+    def __repr__(self) -> str:
+        return f"DrawnSurface({counted(len(self.polygons), 'polygon')}, {counted(self.shapes.shape[-1], 'mode')})"
 
     @property
     def swept(self) -> DrawnSurface:
@@ -78,7 +81,7 @@ def surface_of_mesh(mesh: SolidMesh, shapes: Array) -> DrawnSurface:
     return DrawnSurface(mesh.nodes[used], polygons.reshape(outer.shape), moved)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class DrawnRings:
     """The surface of a body of revolution, given by its outline, to be swept round the axis.
 
@@ -105,6 +108,9 @@ class DrawnRings:
     phases: Array
     frame: Array
     origin: Array
+
+    def __repr__(self) -> str:
+        return f"DrawnRings({counted(len(self.sides), 'side')}, {counted(self.shapes.shape[-1], 'mode')})"
 
     @property
     def at_rest(self) -> DrawnSurface:

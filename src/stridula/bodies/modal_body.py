@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, choice, count, instance, listed
+from ..checks import ArgumentError, choice, count, counted, instance, listed
 from ..histories import Constant, History
 from .body_surfaces import HIGHEST, BodySurface, PointSurface, RingSurface, check_surface
 from .circular_path import CircularPath
@@ -25,7 +25,7 @@ from .sections import Material
 from .turning import Turning
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ModalBody(NamedPoints):
     """A linear body given by mass-normalised modes and their displacements at its points.
 
@@ -110,6 +110,12 @@ class ModalBody(NamedPoints):
         if self.drawn is not None:
             drawn_of(drawn_table(self.drawn), size)
         self._set("places", _places(self.places, self.point_names))
+
+    def __repr__(self) -> str:
+        residual = f" and {counted(self.residual, 'residual shape')}" if self.residual else ""
+        name = f", name={self.name!r}" if self.name else ""
+        modes = counted(len(self.angular_frequency), "mode")
+        return f"ModalBody({modes}{residual}, points {listed(self.points)}{name})"
 
     @classmethod
     def placed(

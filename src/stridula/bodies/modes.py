@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeGuard, TypeVar
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError
+from ..checks import ArgumentError, counted
 
 if TYPE_CHECKING:
     from .circular_path import CircularPath
     from .turning import Turning
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Modes:
     """Mass-normalised modes of a body: ``q''' + d q' + w² q = Phi^T f``.
 
@@ -42,6 +42,12 @@ class Modes:
     translation: Array
     damping_matrix: Array | None = None
     turning: Turning | None = None
+
+    def __repr__(self) -> str:
+        vibrating, residual = self.frequency[~self.massless], int(self.massless.sum())
+        ends = f" to {vibrating.max():.4g} Hz" if vibrating.size else ""
+        more = f" and {counted(residual, 'residual shape')}" if residual else ""
+        return f"Modes({counted(vibrating.size, 'mode')}{ends}{more})"
 
     @property
     def count(self) -> int:

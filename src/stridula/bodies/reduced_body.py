@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, instance, positive
+from ..checks import ArgumentError, instance, listed, positive
 from ..ordinary import of_ordinary_size
 from .cards import FEW
 from .damping import DampingLaw, Rayleigh, checked_damping
@@ -358,7 +358,7 @@ class ReducedBody(NamedPoints):
 
     def __repr__(self) -> str:
         name = f", name={self.name!r}" if self.name else ""
-        return f"ReducedBody({self.mass.shape[0]} degrees of freedom, points {', '.join(self.points)}{name})"
+        return f"ReducedBody({self.mass.shape[0]} degrees of freedom, points {listed(self.points)}{name})"
 
     def __reduce__(self) -> tuple[Any, ...]:
         values = (dict(value) if isinstance(value, Mapping) else value for value in self._values)

@@ -16,7 +16,7 @@ import scipy  # its parts are imported on first use
 import scipy.sparse
 
 from ..arrays import Array
-from ..checks import WHOLE_TURN, ArgumentError, choice, count, finite, instance, listed, positive
+from ..checks import WHOLE_TURN, ArgumentError, choice, count, counted, finite, instance, listed, positive
 from ..doubtful import doubts_of_size, warn_of
 from . import solid_files, solid_shapes
 from .matrix_input import check_finite, numbers
@@ -30,7 +30,7 @@ MOST_NODES = 200_000
 TOLERANCE = 1e-3
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Face:
     """A named part of the surface of a mesh.
 
@@ -48,6 +48,9 @@ class Face:
     nodes: Array
     area: Array
     normal: Array
+
+    def __repr__(self) -> str:
+        return f"Face({counted(len(self.area), 'face')} of elements, {self.area.sum():.4g} m²)"
 
 
 @dataclass(frozen=True, eq=False, repr=False)

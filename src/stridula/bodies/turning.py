@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, count, finite, instance
+from ..checks import ArgumentError, count, counted, finite, instance
 from ..histories import HISTORIES, Constant, History
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Turning:
     """Rotation of the pairs of modes of a body that turns about its axis.
 
@@ -62,6 +62,9 @@ class Turning:
             if len(values) != len(self.pairs):
                 raise ArgumentError(name, f"have one number for each pair, {len(self.pairs)}", got=len(values))
             object.__setattr__(self, name, tuple(values))
+
+    def __repr__(self) -> str:
+        return f"Turning({self.velocity!r} rad/s, {counted(len(self.pairs), 'pair')} of modes)"
 
     def angles(self, time: Array, step: float) -> Array:
         """Return the angles turned between consecutive times, a step apart [rad]."""

@@ -19,7 +19,7 @@ MOST_MODES = 5000
 
 def doubts(system: System) -> list[str]:
     """Return a line about each value that is probably a mistake."""
-    return [line for body in system.bodies for line in _of(system.body_name(body), body)]
+    return [line for body in system.bodies for line in _of(system.body_name(body), body)] + system.doubts
 
 
 def say_doubts(name: str) -> None:

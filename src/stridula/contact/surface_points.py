@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..checks import counted
 from .point_contact import PointContact
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SurfacePoints:
     """The contacts of the points of a surface, each with its area and a tip of known place.
 
@@ -25,6 +26,9 @@ class SurfacePoints:
 
     name: str
     contacts: tuple[PointContact, ...]
+
+    def __repr__(self) -> str:
+        return f"SurfacePoints({self.name!r}, {counted(len(self.contacts), 'point')})"
 
     @property
     def areas(self) -> Array:

@@ -11,6 +11,7 @@ import xarray as xr
 
 from .._kernels import layout as at
 from ..arrays import Array
+from ..linear.free_motions import free_words
 from ..lowering import Assembly
 from ..lowering.blocks import blocks_of
 from ..lowering.model_ends import notes_of
@@ -148,11 +149,13 @@ class Run:
         self.probed.finish(self.done, None if ahead is None else ahead.raw[: ahead.completed * self.timing.ratio])
 
     def why_diverged(self) -> str:
-        """Return the contacts when the run diverged, and the rank of their compliance if it matters, in words."""
+        """Return the contacts when the run diverged, and where they matter their rank and free motions, in words."""
         words = contact_words(self.system.contact_names, self.state.carried[self.arrays.firsts])
         if self.ended != at.CONTACT_UNSOLVED:
             return words
-        return f"{words}; {rank_words(self.arrays, self.blocks, self.state)}"
+        free = free_words(self.system)
+        moves = f"; nothing but friction holds {free}" if free else ""
+        return f"{words}; {rank_words(self.arrays, self.blocks, self.state)}{moves}"
 
     def told_of_divergence(self) -> str:
         """Return time and cause of the divergence in words."""

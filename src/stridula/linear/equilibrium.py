@@ -24,6 +24,7 @@ from .balance import (
 )
 from .complementarity import all_sets, searched
 from .conditions import beyond_friction, broken, fits, is_leaving, margins_of, slides_on, stopping
+from .free_motions import carried_along, normals_of, not_held, words_of
 from .held_twice import held_twice
 from .structure import SEPARATED, SLIDING, STICKING, Structure
 
@@ -113,10 +114,13 @@ def find_equilibrium(structure: Structure, velocity: Array, status: Sequence[str
     if status is not None:
         return _judged(structure, velocity, list(status), "")
     _check_moved(structure, range(len(structure.lines)))
+    _check_carried(structure, velocity)
     search = _Search(structure, velocity)
     chosen, found = search.result()
     if chosen is None:
         return _without(structure, found)
+    closed = [k for k, one in enumerate(chosen) if one != SEPARATED]
+    _check_not_carried(structure, closed, [k for k in closed if chosen[k] == STICKING])
     return _judged(structure, velocity, chosen, found, search.about)
 
 
@@ -295,6 +299,19 @@ def _lifted(structure: Structure, status: Sequence[str]) -> bool:
     return any(one == SEPARATED and name not in closed for name, one in zip(surfaces, status, strict=True))
 
 
+def open_words(structure: Structure, at: Equilibrium) -> list[str]:
+    """Return the least distance of each open contact, and of each surface that is open as a whole, in words."""
+    contacts, names = structure.system.contacts, structure.system.contact_names
+    of_name: dict[str, list[int]] = {}
+    for k, name in enumerate(names):
+        of_name.setdefault(contacts[k].surface or name, []).append(k)
+    return [
+        f"{name} is open by {max(min(float(at.opening[k]) for k in those), 0.0):.3g} m"
+        for name, those in of_name.items()
+        if all(at.status[k] == SEPARATED for k in those)
+    ]
+
+
 def travelling(structure: Structure, at: Equilibrium, speed: Array) -> Array:
     """Return the modal velocities by which an equilibrium follows contact points that travel along bent tracks.
 
@@ -327,6 +344,22 @@ def _check_moved(structure: Structure, closed: Sequence[int]) -> None:
             raise ArgumentError("contact", "be between points that move", got=f"{name}, whose points are both held")
 
 
+def _check_carried(structure: Structure, velocity: Array) -> None:
+    """Raise if, with all contacts closed, friction carries a body along with a track that turns."""
+    count = len(structure.lines)
+    if carried_along(structure, range(count), structure.free_motions(normals_of(structure))).shape[1]:
+        _, at = at_statuses(structure, velocity, [SLIDING] * count)
+        if np.isfinite(at.slip_acceleration).all():
+            _check_not_carried(structure, range(count), stopping(structure, at))
+
+
+def _check_not_carried(structure: Structure, closed: Sequence[int], stuck: Sequence[int]) -> None:
+    """Raise if contacts on a track that turns stick, and nothing but their friction holds a motion of the bodies."""
+    free = structure.free_motions(normals_of(structure, closed))
+    if carried_along(structure, stuck, free).shape[1]:
+        raise not_held(structure, carried_along(structure, closed, free))
+
+
 def _check_determined(structure: Structure, status: Sequence[str], share: Array) -> None:
     """Raise if forces that the constraints leave open move the bodies, or if a free motion is braked."""
     held, pushes, closed, stuck = held_rows(structure, status, share)
@@ -347,8 +380,11 @@ def _check_friction(structure: Structure) -> None:
 
 def _check_unbraked(structure: Structure, free: Array) -> None:
     braked = structure.damping @ free
-    if braked.size and np.abs(braked).max() > ROUND_OFF * max(float(np.abs(structure.damping).max()), 1e-300):
+    least = ROUND_OFF * max(float(np.abs(structure.damping).max()), 1e-300)
+    if braked.size and np.abs(braked).max() > least:
+        _, share, ways = np.linalg.svd(braked, full_matrices=False)
         raise ArgumentError(
             "connections",
             "not brake a rigid motion that is otherwise free, which has no steady state: impose a velocity instead",
+            got=words_of(structure, free @ ways[share > least].T),
         )

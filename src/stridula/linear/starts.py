@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError
+from ..checks import ArgumentError, listed
 from ..contact import FrictionLaw
 from ..drives import MOST_UNSTABLE, InitialEquilibrium
 from ..system import System
-from .equilibrium import HELD, JAMMED, LIFTED_OFF, Equilibrium, find_equilibrium, travelling
+from .equilibrium import HELD, JAMMED, LIFTED_OFF, Equilibrium, find_equilibrium, open_words, travelling
 from .given import given_status, given_velocity
 from .modes import modes_of, round_off
 from .structure import SEPARATED, STICKING, UNMOVED, Structure
@@ -117,8 +117,14 @@ def _check(structure: Structure, at: Equilibrium, status: Sequence[str] | None) 
     names = structure.system.contact_names
     if at.kind == JAMMED or (status is None and at.kind in WAYS_OUT):
         wrong = {HELD: STICKING, LIFTED_OFF: SEPARATED}.get(at.kind)
-        which = ", ".join(name for name, one in zip(names, at.status, strict=True) if wrong in (None, one))
-        raise ArgumentError("initial equilibrium", "slide", got=f"one in which {which} {WAYS_OUT[at.kind]}")
+        which = dict.fromkeys(
+            contact.surface or name
+            for name, contact, one in zip(names, structure.system.contacts, at.status, strict=True)
+            if wrong in (None, one)
+        )
+        far = open_words(structure, at) if at.kind == LIFTED_OFF else []
+        got = f"one in which {listed(which)} {WAYS_OUT[at.kind]}" + (f"; {listed(far)}" if far else "")
+        raise ArgumentError("initial equilibrium", "slide", got=got)
     largest = ROUND_OFF * float(np.abs([at.normal_force, at.tangential_force]).max())
     for k, contact in enumerate(structure.system.contacts):
         if at.normal_force[k] < -largest:
