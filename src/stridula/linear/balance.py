@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -22,6 +23,8 @@ YIELDING, SETTLED = 60, 1e-13
 # Flexibility of rigid contacts that hold the same motion twice, relative to that of the bodies; it vanishes in the
 # iteration, and leaves the forces of which it selects the least.
 SOFT = 1e-8
+# Number of equations that are kept, each with matrices of all closed contacts.
+KEPT = 8
 
 
 @dataclass(frozen=True)
@@ -243,7 +246,7 @@ def _tangent_equations(
     for _ in range(YIELDING if iterates else 1):
         give, beyond = yielding_at(structure, normal)
         give[rigid], beyond[rigid] = soft, -soft * forces[0][rigid]
-        equations = Equations(structure, status, share, give, soft)
+        equations = _equations(structure, status, share, give, soft)
         closed, stuck, lateral = equations.closed, equations.stuck, equations.lateral
         kept = anchors - soft * forces[1:]
         stays = np.concatenate([kept[0, stuck], kept[1, lateral]])
@@ -258,6 +261,17 @@ def _tangent_equations(
         if change <= SETTLED * np.abs(found).max(initial=0.0) or not np.isfinite(found).all():
             break
     return equations, right
+
+
+def _equations(structure: Structure, status: Sequence[str], share: Array, give: Array, soft: float) -> Equations:
+    """Return the equations of some statuses; the last ones are kept, since passes over soft contacts repeat them."""
+    kept: dict[Any, Equations] = structure.once("equations", dict)
+    key = tuple(status), share.tobytes(), give.tobytes(), soft
+    if key not in kept:
+        if len(kept) >= KEPT:
+            kept.pop(next(iter(kept)))
+        kept[key] = Equations(structure, status, share, give, soft)
+    return kept[key]
 
 
 class Equations:

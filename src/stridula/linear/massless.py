@@ -4,6 +4,9 @@ Motions that contacts allow are split into those with mass, a, and those without
 instantaneously, else they creep::
 
     M a'' + D_a a' + D_b b' + K_a a + K_b b + B z = 0    in rows with mass, without M in the others
+
+Only as many of them creep as damping acts on: usually one for each contact, across its slip. The others are eliminated
+as well, so that the eigenproblem does not grow with the number of residual shapes.
 """
 
 from __future__ import annotations
@@ -25,6 +28,8 @@ UNDAMPED = 1e-9
 BESIDE = 0.3
 # Relative inverse of infinite exponents due to rounding.
 ENDLESS = 1e-13
+# Damping of a motion without mass, relative to the largest one and to its stiffness, that is due to rounding.
+CREEPS = 1e-12
 
 
 @dataclass(frozen=True)
@@ -48,20 +53,23 @@ class _Split:
     rigid: int
 
 
-def massless_exponents(motion: Vibration) -> Exponents:
-    """Return all exponents of a system with residual shapes, by a dense solver."""
+def massless_exponents(motion: Vibration, shapes: bool = True) -> Exponents:
+    """Return all exponents of a system with residual shapes, by a dense solver; shapes are empty if not wanted."""
     highest = float(np.sqrt(np.diag(motion.stiffness)[motion.mass > 0.0].max(initial=1.0)))
     split = _split(motion, np.where(motion.mass > 0.0, 1.0, highest))
     if _is_damped(motion, split):
-        return _creeping(motion, split)
+        return _creeping(motion, split, shapes)
     first, followed = _first_order(motion, split)
+    if not shapes:
+        values = scipy.linalg.eigvals(first, check_finite=False, overwrite_a=True)
+        return Exponents(values[values.imag >= 0.0], np.empty((len(motion.mass), 0)))
     values, vectors = scipy.linalg.eig(first, check_finite=False, overwrite_a=True)
     chosen = values.imag >= 0.0
     values, vectors = values[chosen], vectors[:, chosen]
     elastic = split.heavy.shape[1] - split.rigid
     drift = vectors[elastic : elastic + split.rigid] / np.where(values == 0.0, 1.0, values)
     moved = np.concatenate([drift, vectors[:elastic]])
-    return Exponents(values, split.heavy @ moved + split.light @ followed @ vectors)
+    return Exponents(values, split.heavy @ moved + split.light @ (followed @ vectors))
 
 
 def _split(motion: Vibration, scale: Array) -> _Split:
@@ -69,54 +77,108 @@ def _split(motion: Vibration, scale: Array) -> _Split:
     free, held, pushes = motion.free, motion.held * scale, motion.pushes * scale
     allowed = _null(held) if len(held) else np.eye(len(scale))
     balanced = _null(pushes) if len(pushes) else np.eye(len(scale))
-    left, sizes, right = np.linalg.svd((balanced.T * motion.mass) @ allowed)
+    moving = motion.mass > 0.0
+    left, sizes, right = _divided((balanced[moving].T * motion.mass[moving]).T, allowed[moving])
     heavy = int(np.sum(sizes > MASSLESS * sizes[0]))
-    light = allowed @ right[heavy:].T
-    taken = scipy.linalg.orth(np.hstack([free, light])) if free.shape[1] or light.shape[1] else free
-    others = allowed - taken @ (taken.T @ allowed)
-    basis = np.linalg.svd(others, full_matrices=False)[0][:, : heavy - free.shape[1]]
-    moves, rows, size = np.hstack([free, basis]), balanced @ left, scale[:, None]
+    moves, light = allowed @ right[:, :heavy], allowed @ right[:, heavy:]
+    # The same without the free rigid motions, up to their parts without mass.
+    others = scipy.linalg.qr(moves.T @ free)[0][:, free.shape[1] :] if free.shape[1] else np.eye(heavy)
+    rows, size = balanced @ left, scale[:, None]
+    moves = np.hstack([free, moves @ others])
     return _Split(size * moves, size * light, size * rows[:, :heavy], size * rows[:, heavy:], free.shape[1])
+
+
+def _divided(left: Array, right: Array) -> tuple[Array, Array, Array]:
+    """Return the singular value decomposition of ``left^T right``, square, which has few rows between large sides.
+
+    Columns of both square orthogonal matrices beyond the singular values belong to singular values of zero.
+    """
+    few = len(left)
+    if few >= min(left.shape[1], right.shape[1]):
+        turned, sizes, others = np.linalg.svd(left.T @ right)
+        return turned, sizes, others.T
+    (rows, first), (columns, second) = scipy.linalg.qr(left.T), scipy.linalg.qr(right.T)
+    turned, sizes, others = np.linalg.svd(first[:few] @ second[:few].T)
+    rows[:, :few], columns[:, :few] = rows[:, :few] @ turned, columns[:, :few] @ others.T
+    return rows, sizes, columns
 
 
 def _is_damped(motion: Vibration, split: _Split) -> bool:
     """Return whether damping acts on motions without mass."""
+    if not motion.damping.any() or not split.light.size:
+        return False
     seen = np.abs(motion.damping @ split.light).max(initial=0.0) * np.abs(split.light).max(initial=0.0)
     stiff = np.abs(motion.stiffness @ split.light).max(initial=0.0) * np.abs(split.light).max(initial=0.0)
     return bool(seen * float(np.sqrt(np.abs(np.diag(motion.stiffness)).max(initial=0.0))) > UNDAMPED * stiff)
 
 
-def _creeping(motion: Vibration, split: _Split) -> Exponents:
+def _creeping(motion: Vibration, split: _Split, shapes: bool = True) -> Exponents:
     """Return the exponents if damping acts on motions without mass, whose velocities then matter.
 
     The vector s has displacements along all motions with mass except free rigid ones, velocities along all, states, and
-    motions without mass: ``left s' = right s``, singular if a motion without mass is undamped.
+    motions without mass that are damped; the others follow: ``left s' = right s``.
     """
-    heavy, light, rigid = split.heavy, split.light, split.rigid
-    bent, states = heavy[:, rigid:], len(motion.state)
-    sizes = np.cumsum([0, bent.shape[1], heavy.shape[1], states, light.shape[1]])
-    x, v, z, y = (slice(*pair) for pair in pairwise(sizes.tolist()))
     # In units of the inverse of the highest angular frequency, so that numbers are comparable.
     rate = float(np.sqrt(np.diag(motion.stiffness)[motion.mass > 0.0].max(initial=1.0)))
-    stiffness, damping = motion.stiffness / rate**2, motion.damping / rate
+    stiffness, damping, by_state = motion.stiffness / rate**2, motion.damping / rate, motion.by_state / rate**2
+    heavy, rigid, states = split.heavy, split.rigid, len(motion.state)
+    damped, still, creeping, following = _by_damping(split, damping)
+    bent = heavy[:, rigid:]
+    sizes = np.cumsum([0, bent.shape[1], heavy.shape[1], states, damped.shape[1]])
+    x, v, z, y = (slice(*pair) for pair in pairwise(sizes.tolist()))
+    # Displacements `placed s`, without free rigid motions; velocities `moving s' + speed s`.
+    placed, moving, speed = np.zeros((3, len(heavy), sizes[-1]))
+    placed[:, x], placed[:, y], speed[:, v] = bent, damped, heavy
+    pulls = stiffness @ placed + damping @ speed
+    pulls[:, z] += by_state
+    if still.shape[1]:
+        stiff = stiffness @ still
+        follows = -np.linalg.solve(following.T @ stiff, following.T @ pulls)
+        placed += still @ follows
+        pulls += stiff @ follows
+        moving = still @ follows
+    moving[:, y] += damped
+    braked = damping @ moving
     left, right = np.zeros((2, sizes[-1], sizes[-1]))
     left[x, x], right[x, sizes[1] + rigid : sizes[2]] = np.eye(bent.shape[1]), np.eye(bent.shape[1])
-    for rows, test in ((v, split.with_mass), (y, split.without)):
-        right[rows, x], right[rows, y] = -test.T @ stiffness @ bent, -test.T @ stiffness @ light
-        right[rows, v], left[rows, y] = -test.T @ damping @ heavy, test.T @ damping @ light
-        right[rows, z] = -test.T @ motion.by_state / rate**2
-    left[v, v] = split.with_mass.T @ (motion.mass[:, None] * heavy)
-    left[z, z], left[z, y] = np.eye(states), -motion.from_velocity @ light
-    right[z, x], right[z, y] = motion.from_displacement @ bent / rate, motion.from_displacement @ light / rate
-    right[z, v], right[z, z] = motion.from_velocity @ heavy, np.diag(motion.state) / rate
+    for rows, test in ((v, split.with_mass), (y, creeping)):
+        right[rows], left[rows] = -test.T @ pulls, test.T @ braked
+    left[v, v] += split.with_mass.T @ (motion.mass[:, None] * heavy)
+    left[z] = -motion.from_velocity @ moving
+    left[z, z] += np.eye(states)
+    right[z] = motion.from_displacement @ placed / rate + motion.from_velocity @ speed
+    right[z, z] += np.diag(motion.state) / rate
     # Inverse about a shift off the imaginary axis: infinite exponents are its zeros.
-    inverse, vectors = scipy.linalg.eig(np.linalg.solve(right - BESIDE * left, left), check_finite=False)
+    inverse = np.linalg.solve(right - BESIDE * left, left)
+    if not shapes:
+        inverse, vectors = scipy.linalg.eigvals(inverse, check_finite=False), np.empty((sizes[-1], 0))
+    else:
+        inverse, vectors = scipy.linalg.eig(inverse, check_finite=False)
     finite = np.abs(inverse) > ENDLESS * np.abs(inverse).max(initial=0.0)
-    values, vectors = rate * (BESIDE + 1.0 / inverse[finite]), vectors[:, finite]
+    values = rate * (BESIDE + 1.0 / inverse[finite])
     chosen = values.imag >= 0.0
-    values, vectors = values[chosen], vectors[:, chosen]
+    values = values[chosen]
+    if not shapes:
+        return Exponents(values, np.empty((len(heavy), 0)))
+    vectors = vectors[:, finite][:, chosen]
     drift = rate * vectors[sizes[1] : sizes[1] + rigid] / np.where(values == 0.0, 1.0, values)
-    return Exponents(values, heavy @ np.concatenate([drift, vectors[x]]) + light @ vectors[y])
+    return Exponents(values, heavy[:, :rigid] @ drift + placed @ vectors)
+
+
+def _by_damping(split: _Split, damping: Array) -> tuple[Array, Array, Array, Array]:
+    """Return the motions without mass that are damped and those that are not, and the equations of both.
+
+    Damping of motions without mass acts on the first ones and in their equations only.
+    """
+    matrix = split.without.T @ (damping @ split.light)
+    rows, triangle, order = scipy.linalg.qr(matrix, pivoting=True)
+    size = np.abs(np.diag(triangle))
+    count = int(np.sum(size > CREEPS * max(size.max(initial=0.0), 1.0)))
+    kept = np.empty((count, len(matrix)))
+    kept[:, order] = triangle[:count]
+    columns = scipy.linalg.qr(kept.T)[0]
+    light, without = split.light @ columns, split.without @ rows
+    return light[:, :count], light[:, count:], without[:, :count], without[:, count:]
 
 
 def _null(rows: Array) -> Array:

@@ -75,7 +75,7 @@ def _chosen(structure: Structure, motion: Vibration, modes: int | None, near: fl
 def _all(motion: Vibration, shapes: bool = True) -> Exponents:
     # Threads hardly help for matrices of this size, and wait for each other if the processors are busy.
     with threadpool_limits(1):
-        return all_exponents(motion, shapes) if motion.mass.all() else massless_exponents(motion)
+        return (all_exponents if motion.mass.all() else massless_exponents)(motion, shapes)
 
 
 def _nearest(structure: Structure, motion: Vibration, wanted: int, near: float) -> Exponents:

@@ -328,9 +328,11 @@ def _line(one: ContactRows, system: System, arrays: Assembly, shift: float = 0.0
 
     def place(side: int, body: Any, position: Any) -> None:
         rows = body.trace(position, system.is_held(body))
-        points[side][: len(rows), slice(*arrays.spans[system.body_name(body)])] = rows
-        size = len(arrays.blend)
-        points[side][:, :size] = points[side][:, :size] @ arrays.blend
+        first, end = arrays.spans[system.body_name(body)]
+        if end <= len(arrays.blend):
+            points[side][: len(rows), : len(arrays.blend)] = rows @ arrays.blend[first:end]
+        else:
+            points[side][: len(rows), first:end] = rows
 
     place(0, one.contact.tip.body, one.contact.tip.position)
     if touched is not None:

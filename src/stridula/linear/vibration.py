@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -78,38 +78,49 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
     stiffness, damping = structure.stiffness.copy(), structure.damping.copy()
     share, passing = equilibrium.sense * equilibrium.ratio, structure.passing
     held, pushes, closed, stuck = held_rows(structure, equilibrium.status, share)
-    held, answers = held.copy(), list[_Answer]()
+    held, answers, carries = held.copy(), list[_Answer](), bool(passing.any())
+    shifted, shifts = list[Array](), list[Array]()
     for row, k in enumerate(closed):
         line, shape = structure.lines[k], equilibrium.displacement
         held[row] -= (line.normal_slope @ shape) * line.along
         normal, tangential = equilibrium.normal_force[k], equilibrium.tangential_force[k]
         if line.along.any():
-            stiffness += np.outer(normal * line.normal_slope - tangential * line.tangent_slope, line.along)
+            shifted.append(normal * line.normal_slope - tangential * line.tangent_slope)
+            shifts.append(line.along)
         slip = line.tangent - (line.slip_slope @ shape) * line.along
         if k in stuck:
-            if (slip @ passing).any():
+            if carries and (slip @ passing).any():
                 name = structure.system.contact_names[k]
                 raise ArgumentError(
                     "status", f"not let {name} stick to a body that turns: it would be carried away", STICKING
                 )
             held[len(closed) + stuck.index(k)] = slip
-        for one in _answers(structure, equilibrium, k, slip):
-            damping += one.normal * one.near.slope * np.outer(one.pull, one.slip)
-            stiffness += one.normal * one.near.slope * np.outer(one.pull, one.slip @ passing)
-            answers.append(one)
+        answers += _answers(structure, equilibrium, k, slip)
+    pulls, slips = ([getattr(one, word) for one in answers] for word in ("pull", "slip"))
+    rates = [one.normal * one.near.slope for one in answers]
+    _add(stiffness, [1.0] * len(shifts), shifted, shifts)
+    _add(damping, rates, pulls, slips)
+    if carries and answers:
+        _add(stiffness, rates, pulls, np.array(slips) @ passing)
     free = structure.free_motions(held)
-    for row, k in enumerate(closed):
-        yields = structure.system.contacts[k].yields
-        if yields is not None:
-            slope, rate = slopes_at(yields, float(equilibrium.normal_force[k]))
-            stiffness += slope * np.outer(pushes[row], held[row])
-            damping += rate * np.outer(pushes[row], held[row])
+    every = [structure.system.contacts[k].yields for k in closed]
+    forces = equilibrium.normal_force[closed].tolist()
+    slopes = [slopes_at(one, at) if one else (0.0, 0.0) for one, at in zip(every, forces, strict=True)]
+    for matrix, column in zip((stiffness, damping), zip(*slopes, strict=True), strict=False):
+        _add(matrix, column, pushes[: len(closed)], held[: len(closed)])
     rigid = rigid_rows(structure, closed, len(held))
     spread = _independent(held[rigid])
     held, pushes = spread.T @ held[rigid], spread.T @ pushes[rigid]
     by_state, from_velocity, state = _states(kept := [one for one in answers if one.near.state_by_state], structure)
     moved, owners = (from_velocity, from_velocity @ passing), tuple(one.owner for one in kept)
     return Vibration(structure.mass, stiffness, damping, held, pushes, spread, by_state, *moved, state, owners, free)
+
+
+def _add(matrix: Array, factors: Sequence[float], columns: Any, rows: Any) -> None:
+    """Add the outer product of each column and row, times its factor, to a matrix: all at once, as they may be many."""
+    used = np.flatnonzero(factors)
+    if used.size:
+        matrix += (np.array(columns)[used].T * np.array(factors)[used]) @ np.array(rows)[used]
 
 
 def _independent(rows: Array) -> Array:

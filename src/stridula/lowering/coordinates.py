@@ -88,19 +88,23 @@ class Coordinates:
         body: Any = point.body
         return _in_space(self.full(body, body.trace(point.position, self.system.is_held(body))))
 
-    def blended(self, rows: Array) -> Array:
-        """Return rows on the coordinates of the bodies as rows on those of the march."""
-        size = len(self.blend)
-        rows[..., :size] = rows[..., :size] @ self.blend
-        return rows
+    def blended(self, body: Any, numbers: Array) -> Array:
+        """Return rows on a body's own modes as rows on the coordinates of the march."""
+        (first, end), size = self.spans[body], len(self.blend)
+        if end > size:
+            return self.full(body, numbers)
+        out = np.zeros((*numbers.shape[:-1], self.size))
+        out[..., :size] = numbers @ self.blend[first:end]
+        return out
 
     def trace(self, point: BodyPoint) -> Array:
         """Return the rows of the world displacement at a point, shape (3, modes)."""
-        return self.blended(self.body_trace(point))
+        body: Any = point.body
+        return _in_space(self.blended(body, body.trace(point.position, self.system.is_held(body))))
 
     def translation(self, body: Any) -> Array:
         """Return the drive of the modes by a uniform acceleration of a body along x, y and z, shape (3, modes)."""
-        return self.blended(_in_space(self.full(body, self.modes(body).translation)))
+        return _in_space(self.blended(body, self.modes(body).translation))
 
     @cached_property
     def massless(self) -> Array:

@@ -56,7 +56,7 @@ def _rows_of(probe: Any, coordinates: Coordinates, loads: list[Load], direct: Ar
         modes = coordinates.modes(probe.body).count
         if probe.mode >= modes:
             raise ArgumentError("probe", f"be of a mode below {modes}", probe, got=probe.mode)
-        matrix[probe.derivative] = coordinates.blended(coordinates.full(probe.body, np.eye(1, modes, probe.mode)[0]))
+        matrix[probe.derivative] = coordinates.blended(probe.body, np.eye(1, modes, probe.mode)[0])
         return ProbeRows(matrix, direct, contact)
     matrix[probe.derivative] = probe.along @ coordinates.trace(probe.point)
     if system.is_held(probe.point.body):
@@ -69,7 +69,7 @@ def _support_rows(
     probe: SupportForce, coordinates: Coordinates, loads: list[Load], direct: Array, contact: Array
 ) -> ProbeRows:
     matrix = np.zeros((3, coordinates.size))
-    matrix[0] = coordinates.blended(coordinates.full(probe.body, probe.body.support_force(probe.end)))
+    matrix[0] = coordinates.blended(probe.body, probe.body.support_force(probe.end))
     return ProbeRows(matrix, direct, contact)
 
 
@@ -89,7 +89,7 @@ def _reaction_rows(
         raise ArgumentError("probe", "not be a Reaction in a system with bodies in space", probe)
     reaction = beam.root_reaction(system.is_held(beam))
     matrix = np.zeros((3, coordinates.size))
-    matrix[2] = coordinates.blended(coordinates.full(beam, reaction.mass[component]))
+    matrix[2] = coordinates.blended(beam, reaction.mass[component])
     direct[: len(loads)] = [-reaction.held[component] * load.root[component] for load in loads]
     for number, point in enumerate(system.contacts):
         # The force on the tip is the normal force along the normal minus the tangential force along the tangent.
