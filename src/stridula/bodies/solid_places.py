@@ -94,7 +94,7 @@ def sampled(mesh: SolidMesh, facet: Array, places: Array, weights: Array) -> Sam
     """
     kind, (element, side) = mesh.element_kind, facet
     corners = kind.nodes[kind.face_nodes[side]][: len(kind.faces[side])]
-    shares, along, across = _on_face(*places.T, len(corners))
+    shares, along, across = _on_face(places[:, 0], places[:, 1], len(corners))
     values, slopes = shape_functions(kind, shares @ corners)
     nodes = mesh.nodes[mesh.elements[element]]
     jacobian = np.einsum("pni,nj->pij", slopes, nodes)
