@@ -121,6 +121,13 @@ def test_shipped_scenarios_raise_no_doubts_and_the_card_shows_doubts(stridula):
     assert "did you mean g/cm3?" in out
 
 
+def test_the_card_says_which_files_were_replaced(stridula):
+    arguments = ("run", "squeal", *SHORT, "--out", "run.nc")
+    assert "replaced" not in stridula(*arguments)[1]
+    assert "run.nc, replaced" in stridula(*arguments, "--plot", "run.png")[1]
+    assert "run.png, replaced" not in stridula(*arguments)[1]
+
+
 def test_show_reports_doubts_beside_the_text(stridula, tmp_path):
     (tmp_path / "mine.toml").write_text('base = "squeal"\n[track.material]\ndensity = 7.8\n')
     code, out, err = stridula("show", "mine.toml")
