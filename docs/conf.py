@@ -176,6 +176,7 @@ HOMES = {
     "analysis.record_card": "Cards of records",
     "analysis.mobilities": "Mobilities",
     "analysis.stability": "Linear stability",
+    "bars": "Progress",
     "acoustics": "Radiated sound",
     "scenarios": "Scenarios",
     "studies": "Studies of many runs",

@@ -90,6 +90,7 @@ _HOME = {
     "analysis.stability": ("sliding_stability",),
     "analysis": ("regime",),
     "analysis.record_card": ("RecordCard", "card"),
+    "bars": ("show_progress",),
     "acoustics": ("Air", "Bridge", "radiate", "radiation_damping", "radiation_efficiency"),
     "studies": (
         "CalibrationProgress",

@@ -36,6 +36,7 @@ from .analysis.mobilities import mobility as mobility
 from .analysis.record_card import RecordCard as RecordCard
 from .analysis.record_card import card as card
 from .analysis.stability import sliding_stability as sliding_stability
+from .bars import show_progress as show_progress
 from .bodies import AxisymmetricBody as AxisymmetricBody
 from .bodies import BodyPoint as BodyPoint
 from .bodies import Circle as Circle

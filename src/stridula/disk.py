@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import math
 import os
 import re
 import stat
@@ -24,6 +25,9 @@ LONGEST_NAME = 200
 # Largest file that is read into memory as a whole, and largest text of a scenario or a table [bytes].
 LARGEST, LARGEST_TEXT = 4 * 1024**3, 256 * 1024**2
 LEFT_OVER = re.compile(r"\.stridula-(\d+)-\d+\.part")
+# Words of numbers that are not finite, and numbers with an exponent that may be too large.
+NOT_FINITE = re.compile(rb"(?<![\w.])(?:nan|inf|infinity)(?![\w.])", re.IGNORECASE)
+LARGE = re.compile(rb"(\d*\.?\d*)[ed]\+?(\d{3,5})", re.IGNORECASE)
 # Endings of names by which programs recognise the format of a file.
 TABLES = (".csv", ".tsv", ".txt", ".dat", ".xls", ".xlsx", ".ods", ".parquet", ".feather", ".json", ".yaml", ".yml")
 ARRAYS = (".nc", ".nc4", ".cdf", ".netcdf", ".h5", ".hdf", ".hdf5", ".mat", ".npy", ".npz", ".pkl", ".pickle", ".zarr")
@@ -121,6 +125,23 @@ def named(path: str | os.PathLike[str]) -> str:
     """Return the name of a file for messages, without its beginning where it is long."""
     text = str(path)
     return repr(text) if len(text) <= LONGEST_NAME else f"'...{text[-LONGEST_NAME:]}'"
+
+
+def line_not_finite(path: str | os.PathLike[str]) -> str:
+    """Return the first line of a text file with a number that is not finite, as ``line 5: ``; empty without one."""
+    with opened(path) as file:
+        for number, line in enumerate(file, 1):
+            if b"\0" in line:
+                return ""
+            if NOT_FINITE.search(line) or any(map(_overflows, LARGE.findall(line))):
+                return f"line {number}: "
+    return ""
+
+
+def _overflows(parts: tuple[bytes, bytes]) -> bool:
+    with suppress(ValueError):
+        return math.isinf(float(b"e".join(parts)))
+    return False
 
 
 def check_writable(path: str | Path) -> None:

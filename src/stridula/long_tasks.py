@@ -1,4 +1,7 @@
-"""Long tasks, such as the search for the modes of large bodies: notification by the logger, and their early end."""
+"""Long tasks, such as the search for the modes of large bodies: notification by the logger, and their early end.
+
+Messages have the logger "stridula": beginning and end of a task at INFO, how much of it is done at DEBUG.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +10,15 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from time import perf_counter
 from typing import TypeVar
 
 Result = TypeVar("Result")
 
-# Called with the name of a task when it begins, and with None when it is done.
-Tell = Callable[[str | None], None]
+LOGGER = logging.getLogger("stridula")
+# Called with the name of a task, the amount done and the total, 0 if it is not known; and with None when it is done.
+Tell = Callable[[str | None, int, int], None]
+_PRESENT: ContextVar[str] = ContextVar("present", default="")
 _GIVEN_UP: ContextVar[threading.Event | None] = ContextVar("given_up", default=None)
 
 
@@ -36,28 +42,48 @@ def check_wanted() -> None:
         raise GivenUp
 
 
+@contextmanager
+def task_told(task: str) -> Iterator[None]:
+    """Log the beginning and the end of a task.
+
+    The first record describes it in ``task``, the last one has None.
+    """
+    LOGGER.info("%s ...", task, extra={"task": task})
+    start, token = perf_counter(), _PRESENT.set(task)
+    try:
+        yield
+    finally:
+        _PRESENT.reset(token)
+        LOGGER.info("%s: %.3g s", task, perf_counter() - start, extra={"task": None})
+
+
+def tell_done(done: int, total: int) -> None:
+    """Log how much of the present task is done; nothing outside of a task."""
+    if task := _PRESENT.get():
+        LOGGER.debug("%s: %d of %d", task, done, total, extra={"task": task, "done": done, "total": total})
+
+
 class TaskHandler(logging.Handler):
     """Handler that passes on the names of long tasks."""
 
     def __init__(self, tell: Tell) -> None:
-        super().__init__(logging.INFO)
+        super().__init__(logging.DEBUG)
         self.tell = tell
 
     def emit(self, record: logging.LogRecord) -> None:
         """Pass on the task of a record."""
         if hasattr(record, "task"):
-            self.tell(record.task)
+            self.tell(record.task, getattr(record, "done", 0), getattr(record, "total", 0))
 
 
 @contextmanager
 def notified_of_tasks(tell: Tell) -> Iterator[None]:
-    """Pass the names of long tasks to a function; earlier handlers are suspended meanwhile."""
-    logger = logging.getLogger("stridula")
-    level, handlers = logger.level, logger.handlers[:]
-    logger.handlers[:] = [TaskHandler(tell)]
-    logger.setLevel(logging.INFO)
+    """Pass the names of long tasks, and how much is done, to a function; earlier handlers are suspended meanwhile."""
+    level, handlers = LOGGER.level, LOGGER.handlers[:]
+    LOGGER.handlers[:] = [TaskHandler(tell)]
+    LOGGER.setLevel(logging.DEBUG)
     try:
         yield
     finally:
-        logger.setLevel(level)
-        logger.handlers[:] = handlers
+        LOGGER.setLevel(level)
+        LOGGER.handlers[:] = handlers

@@ -20,7 +20,7 @@ AXIS, ORIGIN = (0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
 def meshed():
     mesh = st.SolidMesh.sector((INNER, OUTER), (0.0, 2.0 * math.pi), THICK, (4, AROUND, 1))
     return st.SolidBody(
-        mesh, STEEL, fixed=["inner"], cutoff=CUTOFF, damping=DAMPING, contact_faces=["top"], name="disc"
+        mesh, STEEL, fixed=["inner"], cutoff=CUTOFF, damping=DAMPING, contact_faces={"top": "integration"}, name="disc"
     )
 
 

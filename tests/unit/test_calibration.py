@@ -198,7 +198,7 @@ def call(ranges=None, targets=None, source=valley, **options):
         (call(source="squeal", targets={"regime": "sqeal"}), "did you mean 'squeal'?"),
         (call(source="squeal", targets={"regime": (0.0, 1.0)}), "target of regime must be one of stable sliding, "),
         (call({"frition": (0.0, 1.0)}, {"travel": (0.0, 1.0)}, "squeal"), "did you mean 'friction'?"),
-        (call({"friction": (0.0, 1.0)}, {"travel": (0.0, 1.0)}, "squeal", out="a.nc"), "out must not be given"),
+        (call({"friction": (0.0, 1.0)}, {"travel": (0.0, 1.0)}, "squeal", out="a.csv"), "out must be a NetCDF file"),
         (call({"friction": (0.0, 1.0)}, {"travel": (0.0, 1.0)}, "nope"), "scenario must be a file or one of"),
     ],
 )
@@ -218,3 +218,50 @@ def test_errors_of_an_evaluation_are_raised():
 
     with pytest.raises(TypeError, match="mine"):
         st.calibrate(wrong, RANGES, NEAR)
+
+
+def test_an_interrupted_search_resumes_and_finds_the_same(tmp_path):
+    words = {"population": 8, "generations": 6, "seed": 3}
+    whole = st.calibrate(valley, RANGES, NEAR, **words)
+    kept = words | {"out": tmp_path / "found.nc"}
+
+    def stop(progress):
+        if progress.generation == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        st.calibrate(valley, RANGES, NEAR, watchers=[stop], **kept)
+    sizes, reached = [], []
+
+    def counted(points):
+        sizes.append(len(points))
+        return valley(points)
+
+    counted.__module__, counted.__qualname__ = valley.__module__, valley.__qualname__
+    again = st.calibrate(counted, RANGES, NEAR, watchers=[reached.append], **kept)
+    assert len(sizes) == len(reached) - 3
+    assert [one.resumed for one in reached[2:]] == [3] * len(reached[2:])
+    for name in whole.variables:
+        np.testing.assert_array_equal(again[name].values, whole[name].values)
+    # A finished one is read from its file.
+    sizes.clear()
+    read = st.calibrate(counted, RANGES, NEAR, **kept)
+    assert not sizes
+    assert float(read["miss"]) == float(whole["miss"])
+    assert not (tmp_path / "found.nc.parts").exists()
+    with pytest.raises(ValueError, match=r"^out must be .* that of this calibration, .*, of other points or options$"):
+        st.calibrate(valley, RANGES, NEAR, **kept | {"seed": 4})
+
+
+def test_a_search_over_a_scenario_resumes(tmp_path):
+    words = {"population": 5, "generations": 1, "duration": "2 ms", "out": tmp_path / "found.nc"}
+
+    def stop(progress):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        st.calibrate("squeal", {"friction": (0.5, 1.0)}, {"travel": (1.0, 2.0)}, watchers=[stop], **words)
+    reached = []
+    found = st.calibrate("squeal", {"friction": (0.5, 1.0)}, {"travel": (1.0, 2.0)}, watchers=[reached.append], **words)
+    assert [one.resumed for one in reached] == [1, 1]
+    assert found["met"].values.tolist() == [False]

@@ -20,10 +20,10 @@ import scipy.io
 import stridula as st
 from stridula.analysis.record_card import facts_of as card
 from stridula.analysis.regimes import regime_of
+from stridula.bars import rich_bars
 from stridula.cli import running
 from stridula.cli.doubts import doubts
 from stridula.cli.running import how_to_get_the_level
-from stridula.integration import rich_bars
 from stridula.plot.colours import REGIME_COLOURS
 from stridula.studies.measures import MEASURES, Column, Measure
 
@@ -119,6 +119,13 @@ def test_shipped_scenarios_raise_no_doubts_and_the_card_shows_doubts(stridula):
     assert "doubtful" not in stridula("run", "squeal", *SHORT)[1]
     out = stridula("run", "squeal", *SHORT, "--set", "density=7.8", "--set", "cutoff=5e3")[1]
     assert "did you mean g/cm3?" in out
+
+
+def test_the_card_says_which_files_were_replaced(stridula):
+    arguments = ("run", "squeal", *SHORT, "--out", "run.nc")
+    assert "replaced" not in stridula(*arguments)[1]
+    assert "run.nc, replaced" in stridula(*arguments, "--plot", "run.png")[1]
+    assert "run.png, replaced" not in stridula(*arguments)[1]
 
 
 def test_show_reports_doubts_beside_the_text(stridula, tmp_path):

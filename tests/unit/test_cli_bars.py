@@ -11,8 +11,9 @@ import pytest
 from rich.progress import Progress
 
 import stridula as st
+from stridula.bars import rich_bars
 from stridula.cli.long_tasks import tasks_shown
-from stridula.integration import bars, rich_bars
+from stridula.integration import bars
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
 

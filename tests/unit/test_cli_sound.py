@@ -10,7 +10,7 @@ import pytest
 import soundfile
 
 import stridula as st
-from stridula.integration import rich_bars
+from stridula.bars import rich_bars
 from stridula.scenarios.load import Scenario
 
 

@@ -227,7 +227,7 @@ BAD_DECKS = {
     "made.inp": ("*NODE\n1, 0\n9, 1\n*NGEN\n1, 9\n", "line 4 must be of nodes that are all written out here, got"),
     "other.bdf": ("GRID,1,3,0.,0.,0.\n", "line 1 must be a GRID in the basic coordinate system, got 'GRID,1,3,0"),
     "cut.bdf": ("GRID*                  1\n", "line 2 must be the rest of the card, but the file ends before it"),
-    "far.inp": ("*NODE\n1, 0\n2, 1e999\n", "nodes must have finite coordinates"),
+    "far.inp": ("*NODE\n1, 0\n2, 1e999\n", "line 3: nodes must be finite, got inf"),
 }
 
 

@@ -152,3 +152,86 @@ def test_all_variables_of_a_matlab_file_together_are_bounded(tmp_path, monkeypat
     monkeypatch.setattr(limits, "LARGEST_FILE", 200_000)
     with pytest.raises(ValueError, match=r"^cannot read '.*body.mat': more than .* GiB when unpacked$"):
         st.ReducedBody.read(tmp_path / "body.mat")
+
+
+# Numbers that are not finite are named with file and line.
+
+BODY = {"points": {"tip": [[1.0, 0.0], [0.0, 1.0]]}}
+UNIT = "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1.0\n2 2 1.0\n"
+TETRAHEDRON = """# vtk DataFile Version 3.0
+one
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 4 double
+0 0 0
+1 0 0
+0 {} 0
+0 0 1
+CELLS 1 5
+4 0 1 2 3
+CELL_TYPES 1
+10
+"""
+
+
+def mass_and(name: str, text: str):
+    def read(folder):
+        (folder / "mass.mtx").write_text(UNIT, encoding="utf-8")
+        (folder / name).write_text(text, encoding="utf-8")
+        return st.ReducedBody.read(mass=folder / "mass.mtx", stiffness=folder / name, **BODY)
+
+    return read
+
+
+def packed(folder):
+    stiffness = np.diag([1.0, np.nan])
+    np.savez(folder / "body.npz", mass=np.eye(2), stiffness=stiffness, point_tip=np.eye(2))
+    return st.ReducedBody.read(folder / "body.npz")
+
+
+def meshed(read, coordinate="nan"):
+    def made(folder):
+        (folder / "mesh.vtk").write_text(TETRAHEDRON.format(coordinate), encoding="utf-8")
+        return read(folder / "mesh.vtk")
+
+    return made
+
+
+def heard(folder):
+    soundfile = pytest.importorskip("soundfile")
+    soundfile.write(folder / "sound.wav", np.array([0.0, np.nan, 0.1]), 8000, subtype="FLOAT")
+    return st.read_wav(folder / "sound.wav", full_scale=1.0)
+
+
+NOT_FINITE = {
+    "matrix": (
+        mass_and("k.mtx", UNIT.replace("2 2 1.0", "2 2 NaN")),
+        r"k\.mtx': line 4: stiffness must be finite, got nan$",
+    ),
+    "overflow": (
+        mass_and("k.mtx", UNIT.replace("2 2 1.0", "2 2 1e999")),
+        r"k\.mtx': line 4: stiffness must be finite, got inf$",
+    ),
+    "binary": (packed, r"body\.npz': stiffness must be finite, got nan at row 1, column 1 \(from 0\)$"),
+    "mesh": (meshed(st.SolidMesh.read), r"mesh\.vtk': line 8: nodes must be finite, got nan$"),
+    "profile": (meshed(st.MeshProfile.read), r"mesh\.vtk': line 8: nodes must be finite, got nan$"),
+    "sound": (heard, r"^path must have finite samples, got nan in '.*sound\.wav' at 0\.000125 s$"),
+}
+
+
+@pytest.mark.parametrize("name", NOT_FINITE)
+def test_a_number_that_is_not_finite_is_named_with_file_and_line(name, tmp_path):
+    read, words = NOT_FINITE[name]
+    with pytest.raises(ValueError, match=words) as caught:
+        read(tmp_path)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("value", ["nan", "-inf", "inf kHz"])
+def test_a_value_of_a_table_that_is_not_finite_is_named_with_its_line(value, tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_text(f"friction\n0.3\n\n{value}\n", encoding="utf-8")
+    with pytest.raises(
+        ValueError, match=rf"^--points must have finite numbers, got '{value}' in line 4 of '.*points\.csv'$"
+    ):
+        points_of([], None, None, str(path), yes=False)

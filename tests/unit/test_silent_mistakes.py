@@ -328,3 +328,12 @@ def test_a_face_far_from_its_track_is_named(above, gap):
 def test_a_face_near_its_track_is_not_named(recwarn):
     pressed(1e-4)()
     assert not [one for one in recwarn if "nothing within" in str(one.message)]
+
+
+@pytest.mark.parametrize(("push", "words"), [(5.0, "no contact pressed at any time"), (-5.0, "")])
+def test_a_load_that_pulls_is_noted(push, words):
+    mass = st.PointMass(1.0)
+    contact = st.PointContact(mass.centre, st.RigidTrack(1.0), friction=st.Coulomb(0.3))
+    system = st.System(contact, [st.Force(mass.centre, y=push)])
+    assert st.simulate(system, 1e-3).attrs["notes"] == words
+    assert st.simulate_many([system], 1e-3, labelled=False)[0].attrs["notes"] == words

@@ -94,6 +94,17 @@ def test_a_force_on_a_face_presses_evenly(block):
 
 
 @pytest.mark.parametrize(
+    ("division", "count"), [({"bottom": [3, 2]}, 6), ({"bottom": 9}, 9), ({"bottom": "integration"}, 4)]
+)
+def test_faces_are_divided_as_given(block, division, count):
+    system = st.load_scenario(block, {"bodies.die.contact_faces": division, "drives.1.status": "sticking"}).system
+    assert len(system.contacts) == count
+    record = st.simulate(system, 1e-4)
+    again = st.simulate(st.load_scenario(record).system, 1e-4)
+    np.testing.assert_array_equal(record.surface_force, again.surface_force)
+
+
+@pytest.mark.parametrize(
     ("overrides", "message"),
     [
         ({"surfaces.0.body": "dye"}, "surfaces.0.body must be one of die, bed, got 'dye'; did you mean 'die'?"),
@@ -110,6 +121,9 @@ def test_a_force_on_a_face_presses_evenly(block):
         ({"gap": "-1 mm"}, "surfaces.0.gap must leave the faces apart"),
         ({"surfaces.0.tangent": [1.0, 0.0]}, "surfaces.0"),
         ({"bodies.die.contact_faces": ["sole"]}, "bodies.die.contact_faces.0 must be one of left, right"),
+        ({"bodies.die.contact_faces": {"bottom": 0}}, "bodies.die.contact_faces"),
+        ({"bodies.die.contact_faces": {"bottom": "all"}}, "divisions by name, such as {bottom = 30}"),
+        ({"bodies.die.contact_faces": 3}, "bodies.die.contact_faces must be a list of names, or divisions by name"),
         ({"bodies.die.mesh.offset": [0.05, 0.0, 0.0]}, "must lie opposite the whole face"),
         ({"drives.0.point": "crown"}, "drives.0.point must be"),
     ],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 from importlib.resources import files
@@ -16,6 +16,7 @@ from threadpoolctl import threadpool_limits
 from ..arrays import Array
 from ..bodies.body_surfaces import BodySurface
 from ..cache import keep, key, recall
+from ..long_tasks import check_wanted, task_told, tell_done
 from .equivalent_sources import Fit, Radiator
 from .ring_sources import RingSources
 from .sheets import Sheet, SheetDipoles
@@ -38,6 +39,8 @@ SOURCES = (
 )
 # Time taken by fits above which they are cached [s], and largest size of cached fits [bytes].
 WORTH, LARGEST = 1.0, 125_000_000
+# Time after which fits are cached before all are done [s].
+SOON = 30.0
 
 
 class Fits:
@@ -56,18 +59,44 @@ class Fits:
         self.took = 0.0
 
     def at(self, wavenumbers: Sequence[float]) -> list[Fit]:
-        """Return the fits at wavenumbers [rad/m]; new ones are computed on all processors."""
+        """Return the fits at wavenumbers [rad/m]; new ones are computed on all processors.
+
+        Those done are kept from time to time, and when the computation is interrupted.
+        """
         if self.known is None:
             self.known = _fits(recall(self.name))
         new = [one for one in wavenumbers if one not in self.known]
-        began = time.perf_counter()
-        # Matrices are too small for threads of linear algebra to help.
-        with threadpool_limits(1), ThreadPoolExecutor(os.cpu_count()) as pool:
-            # The first one computes what all fits share.
-            self.known.update((one, self.radiator.fit(one)) for one in new[:1])
-            self.known.update(zip(new[1:], pool.map(self.radiator.fit, new[1:]), strict=True))
-        self.took += time.perf_counter() - began
+        if new:
+            with task_told(f"sound of a body at {len(new)} frequencies"):
+                self._compute(new)
         return [self.known[one] for one in wavenumbers]
+
+    def _compute(self, new: Sequence[float]) -> None:
+        assert self.known is not None
+        began, kept = time.perf_counter(), self.took
+        pool = ThreadPoolExecutor(os.cpu_count())
+        try:
+            # Matrices are too small for threads of linear algebra to help.
+            with threadpool_limits(1):
+                for number, (one, fit) in enumerate(zip(new, self._made(new, pool), strict=True), 1):
+                    self.known[one] = fit
+                    tell_done(number, len(new))
+                    check_wanted()
+                    self.took = kept + time.perf_counter() - began
+                    if self.took > SOON:
+                        self.keep()
+                        began, kept = time.perf_counter(), 0.0
+        except BaseException:
+            self.keep()
+            raise
+        finally:
+            pool.shutdown(cancel_futures=True)
+        self.took = kept + time.perf_counter() - began
+
+    def _made(self, wavenumbers: Sequence[float], pool: ThreadPoolExecutor) -> Iterator[Fit]:
+        # The first one computes what all fits share.
+        yield self.radiator.fit(wavenumbers[0])
+        yield from pool.map(self.radiator.fit, wavenumbers[1:])
 
     def keep(self) -> None:
         """Cache the fits for other processes, if they took long enough and are not too large."""

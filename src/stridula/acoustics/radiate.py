@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
+from ..bars import show_progress
 from ..bodies import ModalBeam, ModalPlate
 from ..checks import ArgumentError, instance
 from ..records.variables import described
@@ -30,6 +31,7 @@ def radiate(
     baffled: bool | None = None,
     air: Air | None = None,
     sample_rate: float | None = None,
+    progress: bool = False,
 ) -> xr.DataArray:
     """Return the sound pressure of a track, or of the bodies of a system, in time.
 
@@ -77,6 +79,8 @@ def radiate(
         The air, `Air()` if left out.
     sample_rate : float, optional
         Sample rate of the sound [Hz], at most that of the record, which is the default.
+    progress : bool, optional
+        Whether bars on standard error show how much of the sound of each body is computed, and the time left.
 
     Returns
     -------
@@ -101,7 +105,8 @@ def radiate(
         instance("baffled", baffled, bool)
     air = Air() if air is None else air
     instance("air", air, Air)
-    return _labelled(*_sound(track, run, listener, bodies, baffled, air, sample_rate))
+    with show_progress(progress):
+        return _labelled(*_sound(track, run, listener, bodies, baffled, air, sample_rate))
 
 
 Sound = tuple[Array, Array, Array, dict[str, Any]]

@@ -228,6 +228,11 @@ def read_wav(path: str | Path, full_scale: float | None = None) -> xr.DataArray:
         # The full message also names the bytes in memory.
         reason = getattr(error, "error_string", error)
         raise ArgumentError("path", "be a sound file", str(path), got=f"{str(path)!r}: {reason}") from error
+    wrong = np.argwhere(~np.isfinite(samples))
+    if wrong.size:
+        at, channel = wrong[0].tolist()
+        got = f"{samples[at, channel]} in {str(path)!r} at {at / rate:.6g} s"
+        raise ArgumentError("path", "have finite samples", str(path), got=got)
     found = SCALE.search(comment)
     if full_scale is None and found is None:
         raise ArgumentError(

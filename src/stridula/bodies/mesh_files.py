@@ -14,6 +14,7 @@ from ..arrays import Array
 from ..checks import ArgumentError, choice, in_one_line
 from ..disk import named, opened
 from ..extras import named_extras
+from .finite_files import check_finite_in
 from .profile_mesh import BODY
 
 PLANES = {"xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
@@ -40,6 +41,7 @@ def read_profile(
     columns = PLANES[choice("plane", plane, tuple(PLANES))]
     mesh = _read(path)
     points = np.asarray(mesh.points, dtype=float)
+    check_finite_in(path, "nodes", points)
     out = [axis for axis in range(points.shape[1]) if axis not in columns]
     if max(columns) >= points.shape[1] or np.ptp(points[:, out], axis=0).any():
         raise ArgumentError("plane", f"be the plane in which the mesh of {named(path)} lies", plane)

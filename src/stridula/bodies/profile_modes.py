@@ -15,7 +15,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh, splu
 from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
-from ..long_tasks import check_wanted
+from ..long_tasks import check_wanted, tell_done
 from ..ordinary import check_mode_count
 from .fourier_elements import FourierElements, U, V, W
 
@@ -101,7 +101,8 @@ def families(
     """Return the modes up to a cutoff [Hz] of some orders, and residual shapes for forces at places (r, z) [m]."""
     found: list[Family] = []
     modes, expected = 0, 0
-    for order in orders:
+    for number, order in enumerate(orders):
+        tell_done(number, len(orders))
         kinds = [Kind(order, (U, V, W), (COSINE, SINE))]
         if order == 0:
             kinds = [Kind(0, (U, W), (COSINE,)), Kind(0, (V,), (SINE,))]

@@ -18,13 +18,14 @@ import scipy.sparse
 from ..arrays import Array
 from ..checks import ArgumentError, at_most, choice, count, instance, listed
 from ..declared import FREQUENCY, Frequency, Own
-from ..long_tasks import check_wanted
+from ..memory import GIB, available_memory
 from ..ordinary import of_ordinary_size
 from . import sparse_reduction
 from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .cards import FEW
 from .damping import DampingLaw, checked_damping
 from .drawn_surfaces import DrawnSurface, surface_of_mesh
+from .face_patches import MOST_PATCHES, Division, Patches, patched, usual_division
 from .factorisation import dissection
 from .long_searches import search_told
 from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
@@ -34,7 +35,7 @@ from .named_points import NamedPoints
 from .sections import Material
 from .solid_elements import assembled
 from .solid_mesh import Face, SolidMesh, place_of
-from .solid_places import FacePoints, face_mean, face_points, located
+from .solid_places import FacePoints, face_mean, face_points, face_values, located
 from .solid_surfaces import cut_faces
 from .sparse_reduction import SparseProblem, modes_of, reduce_sparse
 
@@ -43,6 +44,9 @@ DIRECTIONS = "xyz"
 FASTEST = 30e3
 # Rigid motions that move held nodes by less than this share of the size of a body count as free.
 RIGID = 1e-9
+# Memory [bytes] of the factors of a body of n degrees of freedom over n^(4/3), measured from 36 000 to 109 000, and
+# arrays of the size of all residual shapes that exist at a time.
+FACTOR, ARRAYS = 700.0, 6.0
 # Expected modes over the most that are searched for, from which a search is not begun.
 FAR = 4.0
 
@@ -96,8 +100,12 @@ class SolidBody(NamedPoints):
         body has its full static flexibility there.
     linear : bool, optional
         Whether to keep linear elements, without nodes in the middle of their edges.
-    contact_faces : sequence of str, optional
-        Groups of faces whose points of integration touch other bodies: their full static flexibility is kept as well.
+    contact_faces : sequence of str or mapping, optional
+        Groups of faces that touch other bodies, whose full static flexibility is kept as well: their names, or a
+        mapping from names to divisions into points. A division is the approximate number of patches, the numbers of
+        cells along the longer and the shorter side, such as ``(6, 5)``, or "integration" for every point of
+        integration. Each patch carries a uniform pressure and moves as its mean. If left out, a face of at most 64
+        points of integration has these, any other some 30 patches.
     name : str, optional
         Name in records; distinguishes equal bodies.
 
@@ -119,7 +127,7 @@ class SolidBody(NamedPoints):
     damping: Annotated[float | Sequence[float] | Array | DampingLaw, Own("damping")] = 0.0
     residual_flexibility: bool = True
     linear: bool = False
-    contact_faces: Sequence[str] = ()
+    contact_faces: Sequence[str] | Mapping[str, Division | None] = ()
     name: str = ""
 
     def __post_init__(self) -> None:
@@ -136,9 +144,7 @@ class SolidBody(NamedPoints):
             self._set("mesh", self.mesh.quadratic())
         self._set("points", MappingProxyType(_points(self.points, self.mesh)))
         self._set("fixed", MappingProxyType(_fixed(self.fixed, self.mesh)))
-        given = (self.contact_faces,) if isinstance(self.contact_faces, str) else tuple(self.contact_faces)
-        names = [choice(f"contact_faces[{k}]", one, self.face_names or ("none",)) for k, one in enumerate(given)]
-        self._set("contact_faces", tuple(names))
+        self._set("contact_faces", MappingProxyType(divided(self.contact_faces, self.mesh)))
         size = int(self._free.sum())
         if not size:
             raise ArgumentError("fixed", "leave something free", got="all nodes held")
@@ -208,21 +214,38 @@ class SolidBody(NamedPoints):
         return self.mesh.face(name)
 
     def face_points(self, name: str) -> FacePoints:
-        """Return the points of integration on a named part of its surface: places, areas and normals."""
+        """Return the contact points on a named part of its surface: places, areas and normals.
+
+        They are those of `contact_faces`: points of integration, or the centres of patches.
+        """
         choice("name", name, self.face_names or ("none",))
-        return face_points(self.mesh, name)
+        patches = self.patches(name)
+        return face_points(self.mesh, name) if patches is None else patches.points
+
+    def patches(self, name: str) -> Patches | None:
+        """Return the patches of a named part of its surface; None if its contact points are those of integration."""
+        division = self.contact_faces.get(name) or usual_division(self.mesh, name)  # type: ignore[union-attr]
+        return None if division is None or isinstance(division, str) else patched(self.mesh, name, division)
+
+    def contact_point(self, name: str, number: int) -> BodyPoint:
+        """Return a contact point of a named part of its surface by its number from 0."""
+        if self.patches(name) is None:
+            return self.at(self.face_points(name).place[number].tolist())
+        return self.at(f"{name}[{number + 1}]")
 
     def at(self, position: str | Sequence[float]) -> BodyPoint:
         """Return the point of a name, the mean over a named face, or the point at (x, y, z) within the mesh [m].
 
-        A force on the mean over a face is distributed evenly over it, along a constant direction.
+        A force on the mean over a face is distributed evenly over it, along a constant direction. The patches of a face
+        "rub" are "rub[1]", "rub[2]" and so on.
         """
         return BodyPoint(self, position if isinstance(position, str) else place_of("position", position))
 
     def check_position(self, position: Any) -> None:
         """Raise ValueError unless `position` is the name of a point or of a face, or (x, y, z) within the mesh."""
         if isinstance(position, str):
-            choice("position", position, (*self.point_names, *self.face_names))
+            if position not in self.points and self._patch(position) is None:
+                choice("position", position, (*self.point_names, *self.face_names))
         else:
             located(self.mesh, place_of("position", position))
 
@@ -295,10 +318,15 @@ class SolidBody(NamedPoints):
             node = self.points[position]
             return self.shapes[3 * node : 3 * node + 3]
         if isinstance(position, str):
-            mean = face_mean(self.mesh, position)
-            nodes = np.flatnonzero(mean)
-            return np.einsum("n,nim->im", mean[nodes], self.shapes.reshape(mean.size, 3, -1)[nodes])
-        nodes, shares = located(self.mesh, place_of("position", position))
+            patch = self._patch(position)
+            if patch is None:
+                mean = face_mean(self.mesh, position)
+                nodes, shares = np.flatnonzero(mean), mean[mean != 0.0]
+            else:
+                mean = patch[0].mean[[patch[1]]]
+                nodes, shares = mean.indices, mean.data
+        else:
+            nodes, shares = located(self.mesh, place_of("position", position))
         return np.einsum("n,nim->im", shares, self.shapes.reshape(len(self.mesh.nodes), 3, -1)[nodes])
 
     def place(self, position: Any) -> Array:
@@ -307,6 +335,9 @@ class SolidBody(NamedPoints):
         if position in self.points:
             return np.asarray(self.mesh.nodes[self.points[position]])
         if isinstance(position, str):
+            patch = self._patch(position)
+            if patch is not None:
+                return np.array(patch[0].points.place[patch[1]])
             return np.asarray(face_mean(self.mesh, position) @ self.mesh.nodes)
         return np.array(place_of("position", position))
 
@@ -355,6 +386,16 @@ class SolidBody(NamedPoints):
         for array in (self._reduction.shapes,) if "_reduction" in state else ():
             array.flags.writeable = False
 
+    def _patch(self, position: str) -> tuple[Patches, int] | None:
+        """Return the patches of a face and a number from 0 if a position names one of them, such as "rub[7]"."""
+        name, _, number = position.removesuffix("]").rpartition("[")
+        if name not in self.mesh.faces or not number.isdecimal() or not position.endswith("]"):
+            return None
+        patches = self.patches(name)
+        if patches is None or not 1 <= int(number) <= len(patches.points.area):
+            return None
+        return patches, int(number) - 1
+
     @property
     def _free(self) -> Array:
         """Mask of the degrees of freedom that are not held, shape (3 nodes,)."""
@@ -399,6 +440,7 @@ def _searched(body: SolidBody) -> SolidReduction:
     mesh, free = body.mesh, body._free
     if body.cutoff is not None and free.sum() > LARGEST_SIZE:
         _check_modes(body, float(node_mass.sum()))
+    _check_memory(int(free.sum()), 3 * sum(len(body.face_points(name).area) for name in body.contact_faces))
     mass = scipy.sparse.kron(node_mass, scipy.sparse.eye_array(3), format="csr")
     uniform = np.tile(np.eye(3), (len(mesh.nodes), 1))
     pulled = mass @ uniform
@@ -407,12 +449,19 @@ def _searched(body: SolidBody) -> SolidReduction:
     if body.residual_flexibility:
         at_points = np.zeros((free.size, 3 * nodes.size))
         at_points[(3 * nodes[:, None] + np.arange(3)).ravel(), np.arange(3 * nodes.size)] = 1.0
-        forces = np.hstack([at_points[free], _on_faces(body)[free], forces])
+        at_integration, on_patches = _on_faces(body)
+        forces = np.hstack([at_points[free], at_integration[free], forces])
+        patches = on_patches[free] if on_patches.size else None
     else:
-        forces = forces[:, :0]
+        forces, patches = forces[:, :0], None
     own_mass = mass[free][:, free]
     problem = SparseProblem(
-        own_mass, stiffness[free][:, free], forces, _rigid(mesh, free, own_mass), _order(mesh, node_mass, free)
+        own_mass,
+        stiffness[free][:, free],
+        forces,
+        patches,
+        _rigid(mesh, free, own_mass),
+        _order(mesh, node_mass, free),
     )
     found = reduce_sparse(problem, body.cutoff)
     shapes = np.zeros((free.size, found.angular_frequency.size))
@@ -426,6 +475,17 @@ def _surface(body: SolidBody, largest: float) -> PointSurface:
     moving = ~body.modes().massless
     shapes = body.shapes.reshape(len(body.mesh.nodes), 3, -1)[:, :, moving]
     return cut_faces(body.mesh, shapes, largest)
+
+
+def _check_memory(size: int, shapes: int) -> None:
+    """Raise ValueError if factors and residual shapes exceed the memory of the machine, before they are computed."""
+    needed = FACTOR * size ** (4.0 / 3.0) + 8.0 * ARRAYS * size * shapes
+    if needed > available_memory():
+        got = (
+            f"some {needed / GIB:.2g} of {available_memory() / GIB:.2g} GiB for {shapes} residual shapes of "
+            f"{size} degrees of freedom; give fewer points, such as {{'rub': 30}}, or a coarser mesh"
+        )
+        raise ArgumentError("contact_faces", "need less memory than there is", got=got)
 
 
 def _check_modes(body: SolidBody, mass: float) -> None:
@@ -449,16 +509,23 @@ def _expected(body: SolidBody, mass: float) -> float:
     return float(volume * 8.0 * np.pi / 3.0 * ((body.cutoff or 0.0) / fastest) ** 3)
 
 
-def _on_faces(body: SolidBody) -> Array:
-    """Return unit forces at the points of contact faces, along x, y and z each, shape (3 nodes, forces)."""
-    places = [place for name in body.contact_faces for place in body.face_points(name).place.tolist()]
-    forces = np.zeros((len(body.mesh.nodes), 3, len(places), 3))
-    for number, place in enumerate(places):
-        check_wanted()
-        nodes, shares = located(body.mesh, tuple(place))
-        for direction in range(3):
-            forces[nodes, direction, number, direction] = shares
-    return forces.reshape(3 * len(body.mesh.nodes), -1)
+def _on_faces(body: SolidBody) -> tuple[Array, Array]:
+    """Return unit forces at the points of integration and on the patches of faces, along x, y and z each."""
+    at_points, on_patches = [], []
+    for name in body.contact_faces:
+        patches = body.patches(name)
+        if patches is None:
+            at_points.append(face_values(body.mesh, name))
+        else:
+            on_patches.append(patches.mean)
+    return _along_axes(body, at_points), _along_axes(body, on_patches)
+
+
+def _along_axes(body: SolidBody, shares: list[Any]) -> Array:
+    """Return unit forces along x, y and z from the share of each node, shape (3 nodes, forces)."""
+    if not shares:
+        return np.zeros((3 * len(body.mesh.nodes), 0))
+    return np.asarray(scipy.sparse.kron(scipy.sparse.vstack(shares), scipy.sparse.eye_array(3)).T.toarray())
 
 
 def _rigid(mesh: SolidMesh, free: Array, mass: Any) -> Array:
@@ -554,6 +621,33 @@ def _node(name: Any, where: Any, mesh: SolidMesh, own: Mapping[str, int]) -> int
         return mesh.node_at(where)
     except ArgumentError as error:
         raise error.renamed(word) from None
+
+
+def divided(given: Any, mesh: SolidMesh) -> dict[str, Division | None]:
+    """Return the divisions of faces into contact points by their names, None where none is given."""
+    if isinstance(given, str):
+        given = (given,)
+    if not isinstance(given, (Sequence, Mapping)):
+        raise ArgumentError("contact_faces", "be names of faces, or divisions by name", given)
+    for number, name in enumerate(given):
+        word = "contact_faces" if isinstance(given, Mapping) else f"contact_faces[{number}]"
+        choice(word, name, tuple(mesh.faces) or ("none",))
+    if not isinstance(given, Mapping):
+        return dict.fromkeys(given)
+    return {name: _division(f"contact_faces[{name!r}]", division) for name, division in given.items()}
+
+
+def _division(word: str, given: Any) -> Division | None:
+    """Return a division of a face after checks."""
+    if given is None or given == "integration":
+        return given
+    if isinstance(given, Sequence) and not isinstance(given, str) and len(given) == 2:
+        first, second = (count(f"{word}[{k}]", one, low=1, high=MOST_PATCHES) for k, one in enumerate(given))
+        count(word, first * second, low=1, high=MOST_PATCHES)
+        return first, second
+    if isinstance(given, Integral):
+        return count(word, given, low=1, high=MOST_PATCHES)
+    raise ArgumentError(word, "be a number of patches, two numbers of cells or 'integration'", given)
 
 
 def _fixed(given: Any, mesh: SolidMesh) -> dict[str, str]:

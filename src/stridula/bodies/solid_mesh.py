@@ -19,6 +19,7 @@ from ..arrays import Array
 from ..checks import WHOLE_TURN, ArgumentError, choice, count, counted, finite, instance, listed, positive
 from ..doubtful import doubts_of_size, warn_of
 from . import solid_files, solid_shapes
+from .finite_files import check_finite_in
 from .matrix_input import check_finite, numbers
 from .solid_elements import check_elements
 from .solid_kinds import KINDS, ElementKind
@@ -149,7 +150,9 @@ class SolidMesh:
         if part is not None:
             instance("part", part, str)
         parts = solid_files.read_mesh(path, part)
-        return cls(parts.pop("nodes") * length, **parts)
+        nodes = parts.pop("nodes")
+        check_finite_in(path, "nodes", nodes)
+        return cls(nodes * length, **parts)
 
     @classmethod
     def block(cls, lengths: Sequence[float], divisions: Sequence[int]) -> SolidMesh:

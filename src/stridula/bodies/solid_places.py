@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import scipy  # its parts are imported on first use
+import scipy.sparse
 
 from ..arrays import Array
 from ..checks import ArgumentError
@@ -60,23 +62,57 @@ def face_mean(mesh: SolidMesh, name: str) -> Array:
     return shares / points.area.sum()
 
 
+@lru_cache(maxsize=32)
+def face_values(mesh: SolidMesh, name: str) -> Any:
+    """Return the share of each node in the displacement of each point of integration, sparse, shape (points, nodes)."""
+    points, nodes, values = _integrated(mesh, name)
+    rows = np.repeat(np.arange(len(points.area)), values.shape[1])
+    return scipy.sparse.csr_array((values.ravel(), (rows, nodes.ravel())), shape=(len(points.area), len(mesh.nodes)))
+
+
+@dataclass(frozen=True)
+class Sampled(FacePoints):
+    """Points of integration on the face of one element.
+
+    Attributes
+    ----------
+    nodes : ndarray of int, shape (nodes of the element,)
+        Its nodes.
+    values : ndarray, shape (points, nodes of the element)
+        Their shape functions at the points.
+    """
+
+    nodes: Array
+    values: Array
+
+
+def sampled(mesh: SolidMesh, facet: Array, places: Array, weights: Array) -> Sampled:
+    """Return points of the unit triangle or square, shape (points, 2), as points of a facet.
+
+    A facet is an element and the number of its face. `weights` are shares of the unit area, whose sum is 1/2 on a
+    triangle and 1 on a square.
+    """
+    kind, (element, side) = mesh.element_kind, facet
+    corners = kind.nodes[kind.face_nodes[side]][: len(kind.faces[side])]
+    shares, along, across = _on_face(places[:, 0], places[:, 1], len(corners))
+    values, slopes = shape_functions(kind, shares @ corners)
+    nodes = mesh.nodes[mesh.elements[element]]
+    jacobian = np.einsum("pni,nj->pij", slopes, nodes)
+    first = np.einsum("pi,pij->pj", along @ corners, jacobian)
+    second = np.einsum("pi,pij->pj", across @ corners, jacobian)
+    vectors = np.cross(first, second)
+    size = np.linalg.norm(vectors, axis=1)
+    return Sampled(values @ nodes, weights * size, vectors / size[:, None], mesh.elements[element], values)
+
+
 def _integrated(mesh: SolidMesh, name: str) -> tuple[FacePoints, Array, Array]:
     """Return the points of integration, the nodes of their elements and the values of the shape functions there."""
     mesh.face(name)
     kind, found = mesh.element_kind, []
-    for element, side in mesh.faces[name]:
-        corners = kind.nodes[kind.face_nodes[side]][: len(kind.faces[side])]
-        (u, v), weights = (_SQUARE if len(corners) == 4 else _TRIANGLE)[0].T, (_SQUARE, _TRIANGLE)[len(corners) == 3][1]
-        shares, along, across = _on_face(u, v, len(corners))
-        values, slopes = shape_functions(kind, shares @ corners)
-        nodes = mesh.nodes[mesh.elements[element]]
-        jacobian = np.einsum("pni,nj->pij", slopes, nodes)
-        first = np.einsum("pi,pij->pj", along @ corners, jacobian)
-        second = np.einsum("pi,pij->pj", across @ corners, jacobian)
-        vectors = np.cross(first, second)
-        size = np.linalg.norm(vectors, axis=1)
-        of_element = np.broadcast_to(mesh.elements[element], values.shape)
-        found.append((values @ nodes, weights * size, vectors / size[:, None], of_element, values))
+    for facet in mesh.faces[name]:
+        one = sampled(mesh, facet, *(_SQUARE if len(kind.faces[0]) == 4 else _TRIANGLE))
+        of_element = np.broadcast_to(one.nodes, one.values.shape)
+        found.append((one.place, one.area, one.normal, of_element, one.values))
     *points, numbers, values = (np.concatenate(one) for one in zip(*found, strict=True))
     return FacePoints(*points), numbers, values
 

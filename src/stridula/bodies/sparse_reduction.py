@@ -31,6 +31,11 @@ DENSE_SHARE = 8
 MOST_MODES = 2000
 # Vectors of a search for each mode that may be found before another way is taken.
 VECTORS = 4
+# Largest error of the static compliance at a patch that is due to residual shapes left out, relative to that of all
+# elastic modes.
+COMPLIANCE = 1e-3
+# Forces whose responses are computed at a time, which bounds the memory.
+AT_ONCE = 128
 # Most steps of the static responses; they usually end after some ten.
 MOST_STEPS = 200
 
@@ -61,6 +66,8 @@ class SparseProblem:
         Mass matrix, positive definite, and stiffness matrix, positive semidefinite.
     forces : ndarray, shape (n, forces)
         Forces to which the modes left out respond statically.
+    patches : ndarray, shape (n, patches), optional
+        Forces to which they respond up to `COMPLIANCE` of the compliance of each.
     rigid : ndarray, shape (n, rigid), optional
         Motions without stiffness, mass-normalised; computed with the modes if left out.
     order : ndarray, shape (n,), optional
@@ -70,8 +77,14 @@ class SparseProblem:
     mass: Any
     stiffness: Any
     forces: Array
+    patches: Array | None = None
     rigid: Array | None = None
     order: Array | None = None
+
+    @property
+    def every_force(self) -> Array:
+        """All forces, those on patches last."""
+        return self.forces if self.patches is None else np.hstack([self.forces, self.patches])
 
 
 def reduce_sparse_body(body: Any) -> Reduction:
@@ -133,11 +146,13 @@ def _reduced(problem: SparseProblem, cutoff: float | None) -> SparseReduction:
             "cutoff", f"leave at least one mode (first at {at_least(first)} Hz)", cutoff, got=f"{cutoff!r} Hz"
         )
     angular, shapes = angular[kept], shapes[:, kept]
-    if cutoff is None or not problem.forces.size or shapes.shape[1] == size:
+    if cutoff is None or not problem.every_force.size or shapes.shape[1] == size:
         return SparseReduction(angular, shapes)
     if solve is None:
         solve = factorised(problem.stiffness + shift * problem.mass, problem.order)
     residual = residual_shapes(problem, solve, shapes)
+    if problem.patches is not None:
+        residual = _compressed(problem, angular, shapes, residual)
     angular = np.append(angular, np.full(residual.shape[1], np.inf))
     return SparseReduction(angular, np.hstack([shapes, residual]))
 
@@ -148,13 +163,16 @@ def residual_shapes(problem: SparseProblem, solve: Solve, kept: Array) -> Array:
     ``Psi Psi^T`` is the flexibility of the modes left out wherever these forces act (MacNeal 1971). Rigid modes are
     among those kept, so the response of a free body includes the inertia of its rigid motion.
     """
-    forces = problem.forces
+    forces = problem.every_force
     moved = problem.mass @ kept
     first = solve(forces)
     sizes = np.sqrt(np.maximum(np.sum(forces * first, axis=0), 0.0))
     felt = sizes > 0.0
     forces, first = forces[:, felt] / sizes[felt], first[:, felt] / sizes[felt]
-    answers = _static_answers(problem.stiffness, solve, forces - moved @ (kept.T @ forces), kept, moved, first)
+    forces = forces - moved @ (kept.T @ forces)
+    parts = [slice(start, start + AT_ONCE) for start in range(0, forces.shape[1], AT_ONCE)]
+    found = [_static_answers(problem.stiffness, solve, forces[:, part], kept, moved, first[:, part]) for part in parts]
+    answers = np.hstack(found or [forces])
     own = np.sqrt(np.maximum(np.sum(answers * (problem.stiffness @ answers), axis=0), 0.0))
     # If the modes kept give the whole response to a force, only rounding remains.
     answers = answers[:, own > RESIDUAL] / own[own > RESIDUAL]
@@ -163,6 +181,26 @@ def residual_shapes(problem: SparseProblem, solve: Solve, kept: Array) -> Array:
     basis, factor = _orthonormal_in(problem.stiffness, answers)
     turned, share, _ = scipy.linalg.svd(factor, full_matrices=False)
     return np.asarray(basis @ turned[:, share > RESIDUAL * share[0]])
+
+
+def _compressed(problem: SparseProblem, angular: Array, shapes: Array, residual: Array) -> Array:
+    """Return the combinations of residual shapes that forces on patches need.
+
+    The response to all other forces is kept. Of the remaining compliance at the patches, scaled so that that of all
+    elastic modes is 1 at each, the eigenvectors below `COMPLIANCE` are left out.
+    """
+    exact = residual.T @ problem.forces
+    kept, size, _ = scipy.linalg.svd(exact, full_matrices=True)
+    rank = int(np.sum(size > RESIDUAL * size[0])) if size.size else 0
+    kept, others = kept[:, :rank], kept[:, rank:]
+    at_patches = residual.T @ problem.patches
+    elastic = angular > 0.0
+    modal = (shapes[:, elastic].T @ problem.patches) / angular[elastic, None]
+    total = np.sum(modal**2, axis=0) + np.sum(at_patches**2, axis=0)
+    seen = total > 0.0
+    scaled = (others.T @ at_patches[:, seen]) / np.sqrt(total[seen])
+    ways, share, _ = scipy.linalg.svd(scaled, full_matrices=False)
+    return np.asarray(residual @ np.hstack([kept, others @ ways[:, share**2 > COMPLIANCE]]))
 
 
 def _static_answers(stiffness: Any, solve: Solve, forces: Array, kept: Array, moved: Array, first: Array) -> Array:

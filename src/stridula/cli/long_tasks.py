@@ -14,7 +14,7 @@ def tasks_shown() -> Iterator[None]:
     """Show slow work on a line if standard error is a terminal and no progress bar shows it."""
     line: Any = None
 
-    def tell(task: str | None) -> None:
+    def tell(task: str | None, done: int, total: int) -> None:
         nonlocal line
         if task is None:
             line.stop()
@@ -25,7 +25,7 @@ def tasks_shown() -> Iterator[None]:
         from rich.text import Text
 
         line = line or Status("", console=Console(stderr=True))
-        line.update(Text(f"{task} ..."))
+        line.update(Text(f"{task}: {done} of {total} ..." if total else f"{task} ..."))
         if line.console.is_terminal:
             line.start()
 

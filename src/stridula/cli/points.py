@@ -251,6 +251,14 @@ def _rows(path: str) -> list[dict[str, str]]:
     for number, row in lines[1:]:
         if len(row) != len(header) or not all(value.strip() for value in row):
             raise ArgumentError(
-                "--points", f"have a value for each of {listed(header)}", row, got=f"{brief(row)} in line {number}"
+                "--points",
+                f"have a value for each of {listed(header)}",
+                row,
+                got=f"{brief(row)} in line {number} of {path!r}",
+            )
+        wrong = next((value for value in row if (known := parts(value)) and not math.isfinite(known[0])), None)
+        if wrong is not None:
+            raise ArgumentError(
+                "--points", "have finite numbers", wrong, got=f"{wrong.strip()!r} in line {number} of {path!r}"
             )
     return [dict(zip(header, (value.strip() for value in row), strict=True)) for _, row in lines[1:]]

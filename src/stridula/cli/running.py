@@ -99,6 +99,7 @@ def _finish(
 ) -> list[str]:
     """Write the outputs and print the card, which also comes when one of them fails; return the files written."""
     written: list[str] = []
+    replaced = {str(Path(path)) for path in (out, plot, wav) if path is not None and Path(path).exists()}
     level, notes = how_to_get_the_level(record, scenario, out), ""
     try:
         if out is not None:
@@ -114,7 +115,8 @@ def _finish(
             level = f"at 1 m, {loud}" if loud else "none: too short, or its sample rate too low, for a level"
             written.append(sound)
     finally:
-        print_card(record, scenario.title or name, written, doubts(scenario.system), scenario.system, level)
+        files = [f"{path}, replaced" if str(Path(path)) in replaced else path for path in written]
+        print_card(record, scenario.title or name, files, doubts(scenario.system), scenario.system, level)
     if notes:
         print(notes)
     return written

@@ -1,21 +1,22 @@
-"""The point of a body, or the plane, opposite a place of a face."""
+"""The position on a body, or the plane, opposite a place of a face."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
-from ..bodies import AxisymmetricBody, SolidBody
+from ..bodies import AxisymmetricBody, SolidBody, SolidMesh
 from ..bodies.solid_places import FacePoints
 from ..checks import ArgumentError
 from .rigid_track import RigidTrack
 
 # Relative tolerance at the ends of a side of a profile, or at the edges of a face.
 BEYOND = 1e-9
-# The opposite point or plane, its outward normal, and its distance [m].
+# The opposite position on the body, None for a plane; the outward normal there, and its distance [m].
 Met = tuple[Any, Array, float]
 
 
@@ -23,18 +24,14 @@ def on_plane(track: RigidTrack, _: str, place: Array, normal: Array, points: Fac
     """Return the plane through the foremost points of a face, perpendicular to its mean normal."""
     facing = -(points.area @ points.normal)
     facing = facing / np.linalg.norm(facing)
-    return track, facing, float(place @ facing - (points.place @ facing).min())
+    return None, facing, float(place @ facing - (points.place @ facing).min())
 
 
 def on_solid(body: SolidBody, face: str, place: Array, normal: Array, _: FacePoints) -> Met:
-    """Return the point of a face of a meshed body opposite a place, along the normal there."""
-    faces = body.face(face)
-    corners = len(body.mesh.element_kind.faces[0])
-    nodes = body.mesh.nodes[faces.nodes[:, :corners]]
+    """Return the place on a face of a meshed body opposite a place, along the normal there."""
+    normals, triangles = _triangles(body.mesh, face)
     best: tuple[float, int] | None = None
-    for second in range(1, corners - 1):
-        first, along, across = nodes[:, 0], nodes[:, second] - nodes[:, 0], nodes[:, second + 1] - nodes[:, 0]
-        square = np.cross(along, across)
+    for first, along, across, square in triangles:
         toward = square @ normal
         with np.errstate(divide="ignore", invalid="ignore"):
             far = ((first - place) * square).sum(axis=1) / toward
@@ -50,11 +47,23 @@ def on_solid(body: SolidBody, face: str, place: Array, normal: Array, _: FacePoi
             "track_face", "lie opposite the whole face", face, got=f"nothing opposite {words_of(place)}"
         )
     far, number = best
-    return body.at((place + far * normal).tolist()), -normal if faces.normal[number] @ normal < 0.0 else normal, far
+    return (place + far * normal).tolist(), -normal if normals[number] @ normal < 0.0 else normal, far
+
+
+@lru_cache(maxsize=8)
+def _triangles(mesh: SolidMesh, face: str) -> tuple[Array, list[tuple[Array, Array, Array, Array]]]:
+    """Return the normals of facets, and one triangle of each at a time: corner, both sides, their product."""
+    faces, corners = mesh.face(face), len(mesh.element_kind.faces[0])
+    nodes = mesh.nodes[faces.nodes[:, :corners]]
+    found = []
+    for second in range(1, corners - 1):
+        first, along, across = nodes[:, 0], nodes[:, second] - nodes[:, 0], nodes[:, second + 1] - nodes[:, 0]
+        found.append((first, along, across, np.cross(along, across)))
+    return faces.normal, found
 
 
 def on_revolution(body: AxisymmetricBody, _: str, place: Array, normal: Array, points: FacePoints) -> Met:
-    """Return the point of the surface of a body of revolution opposite a place, along the normal there."""
+    """Return the position on the surface of a body of revolution opposite a place, along the normal there."""
     frame, mesh = body.frame, body.mesh
     x, y, z = frame @ (place - np.asarray(body.origin))
     r, theta = float(np.hypot(x, y)), float(np.arctan2(y, x))
@@ -74,7 +83,7 @@ def on_revolution(body: AxisymmetricBody, _: str, place: Array, normal: Array, p
     # The profile is to the left of its outline.
     outward = np.array([along[side, 1], -along[side, 0]]) / np.hypot(*along[side])
     facing = outward @ np.stack(directions)
-    return body.at((float(found[0]), theta, float(found[1]))), facing, float(far[side])
+    return (float(found[0]), theta, float(found[1])), facing, float(far[side])
 
 
 def words_of(place: Array) -> str:

@@ -16,6 +16,7 @@ from ..bodies.solid_overlays import overlaid
 from ..bodies.solid_places import FacePoints
 from ..checks import ArgumentError, choice, finite, instance
 from ..declared import Each, Number, Position, check_declared
+from ..doubtful import warn_of
 from .coulomb import Coulomb
 from .facing import BEFORE, words_of
 from .friction_law import FrictionLaw
@@ -23,6 +24,8 @@ from .point_contact import PointContact
 from .rigid_track import RigidTrack
 from .stiffness import ContactStiffness, checked_stiffness, per_area
 
+# Points of a face beyond which the time of a run is mentioned.
+MANY = 250
 # Least cosine between opposite normals of two faces that face each other.
 FACING = 0.5
 # Largest overlap of faces, relative to the size of the sliding one, that is due to rounding of coordinates.
@@ -105,7 +108,14 @@ class SurfaceContact:
         if self.turning is not None:
             object.__setattr__(self, "turning", self._checked_turning(self.turning))
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
-        self.contacts  # noqa: B018, computed now, so that errors are raised here
+        if len(self.contacts) > MANY:
+            warn_of(
+                [
+                    f"{len(self.contacts)} points of {self.name!r}: a second of motion with 120 takes minutes, and the "
+                    "time grows with the square; give the body fewer, such as "
+                    f"contact_faces={{{self.face!r}: 30}}"
+                ]
+            )
 
     @cached_property
     def points(self) -> FacePoints:
@@ -130,11 +140,14 @@ class SurfaceContact:
     def contacts(self) -> tuple[PointContact, ...]:
         """The contacts of its points."""
         points, size = self.points, float(np.ptp(self.points.place, axis=0).max())
+        gaps = self._gaps
         found = []
         for number, (place, area, normal) in enumerate(
             zip(points.place, points.area.tolist(), points.normal, strict=True)
         ):
-            track, facing, gap = BEFORE[self.track.kind](self.track, self.track_face, place, normal, points)
+            position, facing, gap = BEFORE[self.track.kind](self.track, self.track_face, place, normal, points)
+            track = self.track if position is None else self.track.at(position)
+            gap = gap if gaps is None else float(gaps[number])
             if facing @ normal > -FACING:
                 got = f"an angle of {np.degrees(np.arccos(-facing @ normal)):.3g} degrees"
                 raise ArgumentError("track", f"face the {self.face!r} of the body", got=f"{got} at {words_of(place)}")
@@ -142,7 +155,7 @@ class SurfaceContact:
                 got = f"an overlap of {-gap - self.gap:.3g} m at {words_of(place)}"
                 raise ArgumentError("gap", "leave the faces apart", self.gap, got=got)
             contact = PointContact(
-                self.body.at(place.tolist()),
+                self.body.at(place.tolist()) if self.overlay else self.body.contact_point(self.face, number),
                 track,
                 friction=self.friction,
                 gap=max(gap + self.gap, 0.0),
@@ -155,6 +168,20 @@ class SurfaceContact:
             )
             found.append(contact)
         return tuple(found)
+
+    @cached_property
+    def _gaps(self) -> Array | None:
+        """Mean gap of each patch [m], None where the gap at its centre is the same: in flat faces and for points."""
+        patches = None if self.overlay else self.body.patches(self.face)
+        if patches is None or self.track.kind == RigidTrack.kind:
+            return None
+        samples = patches.samples
+        before = BEFORE[self.track.kind]
+        found = [
+            before(self.track, self.track_face, *one, samples)
+            for one in zip(samples.place, samples.normal, strict=True)
+        ]
+        return patches.averaged(np.array([gap for *_, gap in found]))
 
     def _directions(self, track: Any, place: Array, facing: Array) -> dict[str, Any]:
         """Return the first tangent of a point and the velocity of the track along it, as arguments of its contact."""

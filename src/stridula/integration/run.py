@@ -192,6 +192,14 @@ class Run:
             names, points = surfaces.names, ()
         return PlainRecord(self._time(), variables, names, self._attributes(False, {}), points)
 
+    def _note_of_contacts(self) -> list[str]:
+        """Return a note if nothing pressed during the whole record, as under a load that pulls."""
+        if "normal_force" not in self.wanted:
+            # The row has no values.
+            return []
+        pressed = self.contact_record[at.NORMAL_FORCE, :, : self.done]
+        return ["no contact pressed at any time"] if pressed.size and not pressed.any() else []
+
     @property
     def _last_step(self) -> int:
         return self.first_step + self.done * self.timing.ratio
@@ -237,7 +245,7 @@ class Run:
             "steps_per_sample": timing.ratio,
             "sample_interval": timing.interval,
             "modes": self.arrays.mode_count,
-            "notes": "; ".join([*notes, *note_of_start(self.system)]),
+            "notes": "; ".join([*notes, *note_of_start(self.system), *self._note_of_contacts()]),
             "contact_tolerance": self.solve.tolerance,
             "initial_energy": self.initial_energy,
             "largest_energy": self.belief.largest_energy,

@@ -497,6 +497,29 @@ class Fixed(_Kind):
 
 
 @dataclass(frozen=True)
+class Divided(_Kind):
+    """Faces in contact: their names, or their divisions into points by name."""
+
+    def read(self, value: Any) -> Any:
+        if isinstance(value, list) and all(isinstance(one, str) for one in value):
+            return value
+        if not isinstance(value, dict) or not all(map(self._is_division, value.values())):
+            raise _refused("be a list of names, or divisions by name, such as {bottom = 30} or {bottom = [6, 5]}")
+        return {name: tuple(one) if isinstance(one, list) else one for name, one in value.items()}
+
+    @staticmethod
+    def _is_division(one: Any) -> bool:
+        return _is_whole(one) or one == "integration" or (isinstance(one, list) and all(map(_is_whole, one)))
+
+    def json_schema(self) -> dict[str, Any]:
+        number = {"type": "integer", "minimum": 1}
+        pair = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
+        one = {"anyOf": [number, pair, {"const": "integration"}]}
+        names = {"type": "array", "items": {"type": "string"}}
+        return {"anyOf": [names, {"type": "object", "additionalProperties": one}]}
+
+
+@dataclass(frozen=True)
 class Numbers(_Kind):
     """A list of numbers or a matrix, written out or packed; where allowed also a number, a law of damping or a file.
 
@@ -707,6 +730,7 @@ OfProfile = Annotated[tuple[float, float], Row((Quantity("m"),) * 2, "(r, z), tw
 LengthOrEach = Annotated[Any, OneOrEach(Quantity("m", above=0.0))]
 MeshNode = Annotated[Any, Node()]
 FixedGroups = Annotated[Any, Fixed()]
+DividedFaces = Annotated[Any, Divided()]
 Directions = Annotated[Any, Words(DIRECTIONS, each=True)]
 
 # In the JSON schema the unit of a number is identified by the allowed spellings of its text.

@@ -148,6 +148,8 @@ class FileMesh(Placed):
     """file of a mesh, beside the scenario"""
     scale: is_.Length = 1.0
     """length of the file's unit [m]"""
+    part: str | None = None
+    """part of the file: an instance, a group of elements, a material or a property; all if left out"""
 
 
 class ElementsMesh(Placed):
@@ -208,7 +210,11 @@ def meshed_tables(kinds: str, material: Any, name: Keys) -> list[type[Table]]:
         "fixed": (is_.FixedGroups, (), "groups of faces or nodes that are held: their names, or directions by name"),
     }
     flags: Keys = {
-        "contact_faces": (list[str], (), "faces that touch others, which are made flexible at their points"),
+        "contact_faces": (
+            is_.DividedFaces,
+            (),
+            "faces that touch others, flexible at their points: their names, or numbers of points by name",
+        ),
         "residual_flexibility": (bool, True, "whether modes beyond the cutoff add static flexibility at the points"),
         "linear": (bool, False, "whether elements without midside nodes are kept as they are"),
     }

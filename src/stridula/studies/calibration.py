@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -32,7 +33,10 @@ from ..checks import (
 from ..integration.bars import bar
 from ..linear.equilibrium import HELD, JAMMED, LIFTED_OFF
 from ..linear.structure import SLIDING
+from ..scenarios.read import read_tables
+from ..version import __version__
 from .measures import MEASURES, Value, value_of
+from .parts import Parts
 from .points import Range, ranges_of
 from .sources import SystemOf, check_takes, takes, takes_one
 from .sweeps import sweep
@@ -43,6 +47,8 @@ Evaluate = Callable[[Sequence[Point]], Sequence[Mapping[str, Value]]]
 WORST = 10.0
 MOST_GENERATIONS = 100_000
 LARGEST_POPULATION = 10_000
+# Kind of study in a file.
+STUDY = "calibration"
 # Names of other results of a calibration.
 OWN = ("miss", "met", "target", "generation", "parameter", "best_miss", "best_parameters")
 COLUMNS = {column.name: column for measure in MEASURES.values() for column in measure.columns}
@@ -122,12 +128,15 @@ class CalibrationProgress:
         Miss of the best parameters so far.
     best : dict
         Best parameters so far.
+    resumed : int
+        Number of generations computed in earlier calls.
     """
 
     generation: int
     generations: int
     miss: float
     best: Point
+    resumed: int = 0
 
 
 def calibrate(
@@ -141,6 +150,7 @@ def calibrate(
     seed: int = 0,
     start: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,
     spread: float = 0.02,
+    out: str | Path | None = None,
     watchers: Sequence[Callable[[CalibrationProgress], None]] = (),
     progress: bool = False,
     **options: Any,
@@ -175,6 +185,9 @@ def calibrate(
         around which the rest are spread in turn.
     spread : float, optional
         Standard deviation of the other sets around `start`, as a fraction of the ranges.
+    out : str or Path, optional
+        NetCDF file to write. Finished generations are kept in a folder beside it, ``<out>.parts``; the same call
+        resumes from there.
     watchers : sequence of callable, optional
         Called with a `CalibrationProgress` after each generation.
     progress : bool, optional
@@ -196,7 +209,10 @@ def calibrate(
     ScenarioError
         If the scenario is invalid, or a key is unknown.
     ValueError
-        If an argument is out of its range, or no set of the first generation can be run.
+        If an argument is out of its range, no set of the first generation can be run, or `out` is another file or that
+        of another calibration. Functions are distinguished by their names only.
+    OSError
+        If the file or a generation cannot be written; finished generations are kept.
     """
     searched = ranges_of("ranges", ranges)
     aimed = _targets(targets)
@@ -210,8 +226,15 @@ def calibrate(
     evaluate = _evaluation(source, names) if is_evaluation else _sweeping(source, aimed, measures or {}, options)
     random = np.random.default_rng(seed)
     first = _first_population(searched, population, random, start, spread)
+    asked = {"ranges": searched, "targets": aimed, "measures": list(measures or {}), "population": population}
+    asked |= {"generations": generations, "seed": seed, "start": first.tolist(), "options": options}
+    identity = _identity(source, asked)
+    store = None if out is None else Parts(out, identity, STUDY)
+    if store is not None and store.finished is not None:
+        store.clear()
+        return store.finished
     with _generations_shown(progress) as more, suppress(_Met), _own_errors():
-        search = _Search(searched, aimed, evaluate, generations, [*watchers, *more])
+        search = _Search(searched, aimed, evaluate, generations, [*watchers, *more], store)
         scipy.optimize.differential_evolution(
             search.misses,
             [(0.0, 1.0)] * len(searched),
@@ -226,7 +249,26 @@ def calibrate(
             vectorized=True,
             updating="deferred",
         )
-    return search.dataset()
+    found = search.dataset()
+    if store is not None:
+        found.attrs |= identity
+        store.finish(found)
+    return found
+
+
+def _identity(source: Any, asked: Mapping[str, Any]) -> dict[str, str]:
+    """Return attributes that distinguish a calibration from others."""
+
+    def words(value: Any) -> str:
+        return f"{value.__module__}.{value.__qualname__}" if hasattr(value, "__qualname__") else repr(value)
+
+    of = {"function": words(source)}
+    if not callable(source):
+        of = {"scenario": json.dumps(read_tables(source), ensure_ascii=False, default=repr)}
+    machines = ("workers", "client")
+    options = {name: value for name, value in asked["options"].items() if name not in machines}
+    text = json.dumps({**asked, "options": options}, ensure_ascii=False, default=words)
+    return {**of, STUDY: text, "stridula_version": __version__}
 
 
 @contextmanager
@@ -240,7 +282,7 @@ def _generations_shown(progress: bool) -> Iterator[list[Callable[[CalibrationPro
 
         def watch(reached: CalibrationProgress) -> None:
             words = f"generation {reached.generation} of {reached.generations}, miss {reached.miss:.4g}"
-            show(reached.generation + 1, reached.generations + 1, words)
+            show(reached.generation + 1, reached.generations + 1, words, reached.resumed)
 
         yield [watch]
 
@@ -315,9 +357,6 @@ def _sweeping(
 ) -> Evaluate:
     """Return a function that runs a scenario at many points and measures the quantities of the targets."""
     instance("measures", functions, Mapping)
-    for option in ("out", "watchers"):
-        if option in options:
-            raise ArgumentError(option, "not be given: every generation is a separate sweep")
     for name, target in targets.items():
         if name not in functions:
             _check_target(name, target, list(functions))
@@ -394,6 +433,7 @@ class _Search:
         evaluate: Evaluate,
         generations: int,
         watchers: Sequence[Callable[[CalibrationProgress], None]],
+        store: Parts | None,
     ) -> None:
         self.ranges, self.targets, self.evaluate = ranges, targets, evaluate
         self.generations, self.watchers = generations, watchers
@@ -401,6 +441,7 @@ class _Search:
         self.measured: Mapping[str, Value] = {}
         self.miss = math.inf
         self.history: list[tuple[float, Array]] = []
+        self.store, self.resumed = store, 0
 
     def point(self, shares: Array) -> Point:
         """Return the parameters at fractions of the ranges."""
@@ -410,7 +451,7 @@ class _Search:
         """Return the sum of squared misses of each set of parameters, from shape (parameters, sets) to (sets,)."""
         sets = np.atleast_2d(columns.T)
         with _kept_from_scipy():
-            found = self.measured_at([self.point(shares) for shares in sets])
+            found = self._kept([self.point(shares) for shares in sets])
         totals = np.array(
             [sum(miss_of(target, one[name]) ** 2 for name, target in self.targets.items()) for one in found]
         )
@@ -421,10 +462,25 @@ class _Search:
         for watch in self.watchers:
             point = self.point(self.shares)
             with _kept_from_scipy():
-                watch(CalibrationProgress(len(self.history) - 1, self.generations, math.sqrt(self.miss), point))
+                reached = len(self.history) - 1, self.generations, math.sqrt(self.miss), point
+                watch(CalibrationProgress(*reached, self.resumed))
         if self.miss == 0.0:
             raise _Met
         return totals
+
+    def _kept(self, points: Sequence[Point]) -> list[dict[str, Value]]:
+        """Return the measures of each set of the next generation, those of an earlier call if it has computed them."""
+        number = len(self.history)
+        if self.store is None:
+            return self.measured_at(points)
+        # Equal seeds give equal searches, so that the sets of an earlier call are the same.
+        known = self.store.done({number: len(points)}).get(number)
+        if known is not None:
+            self.resumed += 1
+            return [dict(one["values"]) for one in known]
+        found = self.measured_at(points)
+        self.store.keep(number, [{"ended": "", "message": "", "values": one} for one in found])
+        return found
 
     def measured_at(self, points: Sequence[Point]) -> list[dict[str, Value]]:
         """Return the measures of each set of parameters, checked."""

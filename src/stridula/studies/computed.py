@@ -15,8 +15,9 @@ from typing import Any
 
 import xarray as xr
 
+from ..bars.line_bars import Show
 from ..checks import ArgumentError, count, instance
-from ..integration.bars import Show, bar
+from ..integration.bars import bar
 from .machines import on_machines
 from .parts import Parts
 from .processes import Helpers
@@ -35,11 +36,14 @@ class SweepProgress:
         Total number of points.
     wall_time : float
         Time since the start of this call [s].
+    resumed : int
+        Number of points done in earlier calls.
     """
 
     done: int
     points: int
     wall_time: float
+    resumed: int = 0
 
 
 Watcher = Callable[[SweepProgress], None]
@@ -86,7 +90,12 @@ class Plan:
 
 def told_of_points(show: Show) -> Watcher:
     """Return a watcher that shows the points done in a bar."""
-    return lambda reached: show(reached.done, reached.points, f"{reached.done} of {reached.points} points")
+
+    def watch(reached: SweepProgress) -> None:
+        words = f"{reached.done} of {reached.points} points"
+        show(reached.done, reached.points, words, reached.resumed)
+
+    return watch
 
 
 def check_options(workers: Any, client: Any, watchers: Any, progress: Any) -> None:
@@ -149,11 +158,12 @@ def _computed(
         return store.finished
     done = {} if store is None else store.done({number: len(part) for number, part in plan.parts.items()})
     left = {number: part for number, part in plan.parts.items() if number not in done}
+    resumed = sum(map(len, done.values()))
 
     def report() -> None:
         reached = sum(map(len, done.values()))
         for watch in watchers:
-            watch(SweepProgress(reached, len(plan.values), time.perf_counter() - began))
+            watch(SweepProgress(reached, len(plan.values), time.perf_counter() - began, resumed))
 
     if done:
         report()

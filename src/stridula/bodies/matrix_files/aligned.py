@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.sparse import issparse
 
 from ...arrays import Array
 from ...checks import ArgumentError
+from ..finite_files import check_finite_in
 from .entries import Entries, labels_of
 from .formats import PathLike, format_of, whole_file
 from .labels import beside, read_labels
@@ -58,7 +60,11 @@ def read_container(path: PathLike) -> dict[str, Any] | None:
     if kind.whole is None:
         return None
     with whole_file(path):
-        return kind.whole(path)
+        found = kind.whole(path)
+    for name, value in (found | {f"points[{point!r}]": rows for point, rows in found["points"].items()}).items():
+        if name != "points":
+            check_finite_in(path, name, np.asarray(getattr(value, "data", value) if issparse(value) else value))
+    return found
 
 
 def files_of(path: PathLike) -> dict[str, PathLike]:
@@ -139,7 +145,9 @@ def _one_matrix(name: str, path: PathLike) -> Entries:
             got=f"{os.fspath(path)!r}; give a file with all matrices as path",
         )
     with whole_file(path):
-        return kind.matrix(name, path)
+        found = kind.matrix(name, path)
+    check_finite_in(path, name, found.values)
+    return found
 
 
 def _with_labels(

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...checks import ArgumentError, finite
+from ..finite_files import check_finite_in
 from .formats import PathLike, format_of, whole_file
 from .nastran_cards import fields_of, real
 from .text import Lines, text_of
@@ -69,9 +70,8 @@ def read_nodes(path: PathLike) -> Nodes:
         places = np.array([place for _, place in held])
         if np.unique(numbers).size < numbers.size:
             raise ValueError("nodes must have different numbers")
-        if not np.isfinite(places).all():
-            raise ValueError("nodes must have finite coordinates")
-        return Nodes(numbers, places)
+    check_finite_in(path, "nodes", places)
+    return Nodes(numbers, places)
 
 
 def _of_abaqus(lines: Lines) -> Iterator[tuple[int, list[float]]]:

@@ -29,6 +29,8 @@ class RichBar:
         Initial text beside it.
     """
 
+    changes = True
+
     def __init__(self, title: str, words: str) -> None:
         self.console = Console(stderr=True)
         self._progress = Progress(
@@ -53,6 +55,7 @@ class RichBar:
         """Show a text beside the bar."""
         self._progress.update(self._task, words=words)
 
-    def show(self, done: float, total: float, words: str) -> None:
-        """Show how much is done, with a text."""
+    def show(self, done: float, total: float, words: str, before: float = 0.0) -> None:
+        """Show how much is done, with a text; the time left follows from the part done since `before`."""
+        # The speed is that between updates; the first one, with what was done before, does not count.
         self._progress.update(self._task, completed=done, total=total, words=words)

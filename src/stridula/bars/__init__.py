@@ -1,0 +1,5 @@
+"""Bars that show how much of a computation is done."""
+
+from .tasks import show_progress
+
+__all__ = ["show_progress"]
