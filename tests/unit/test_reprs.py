@@ -53,6 +53,7 @@ def test_the_text_of_a_system_needs_no_modes():
 MANY = {f"point {k}": np.ones((3, 40)) for k in range(200)}
 SHOWN = {
     "Face": lambda pad, turning: pad.face("bottom"),
+    "SurfaceContact": lambda pad, turning: braked().contact,
     "Modes": lambda pad, turning: pad.modes(),
     "PointSurface": lambda pad, turning: pad.surface(),
     "RingSurface": lambda pad, turning: turning.surface(),

@@ -14,7 +14,7 @@ from ..arrays import Array
 from ..bodies import AxisymmetricBody, SolidBody
 from ..bodies.solid_overlays import overlaid
 from ..bodies.solid_places import FacePoints
-from ..checks import ArgumentError, choice, finite, instance
+from ..checks import ArgumentError, choice, counted, finite, instance
 from ..declared import Each, Number, Position, check_declared
 from ..doubtful import warn_of
 from .coulomb import Coulomb
@@ -35,7 +35,7 @@ OVERLAP = 1e-6
 ALONG, ON_THE_AXIS = 0.98, 1e-9
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SurfaceContact:
     """A face in contact, point by point: each point of integration touches the opposite point of the track.
 
@@ -116,6 +116,11 @@ class SurfaceContact:
                     f"contact_faces={{{self.face!r}: 30}}"
                 ]
             )
+
+    def __repr__(self) -> str:
+        other = f"{self.track_face!r} of {type(self.track).__name__}" if self.track_face else type(self.track).__name__
+        sides = f"{self.face!r} of {type(self.body).__name__} on {other}"
+        return f"SurfaceContact({self.name!r}, {sides}, {counted(len(self.contacts), 'point')})"
 
     @cached_property
     def points(self) -> FacePoints:

@@ -228,8 +228,7 @@ def calibrate(
     first = _first_population(searched, population, random, start, spread)
     asked = {"ranges": searched, "targets": aimed, "measures": list(measures or {}), "population": population}
     asked |= {"generations": generations, "seed": seed, "start": first.tolist(), "options": options}
-    identity = _identity(source, asked)
-    store = None if out is None else Parts(out, identity, STUDY)
+    store = None if out is None else Parts(out, _identity(source, asked), STUDY)
     if store is not None and store.finished is not None:
         store.clear()
         return store.finished
@@ -251,7 +250,7 @@ def calibrate(
         )
     found = search.dataset()
     if store is not None:
-        found.attrs |= identity
+        found.attrs |= store.identity
         store.finish(found)
     return found
 
