@@ -10,11 +10,16 @@ endif
 unexport PYTHONDONTWRITEBYTECODE
 BIN := .venv/$(PROGRAMS)
 OLDEST := .venv-oldest/$(PROGRAMS)
+FAST := .venv-fast/$(PROGRAMS)
 # A part of the tests that goes through the package and takes neither a browser nor what Debian has.
 SMOKE := tests/unit/test_simulate.py tests/unit/test_scenarios.py tests/unit/test_files.py tests/unit/test_extras.py \
 	tests/unit/test_plot.py tests/hearing/test_wav.py tests/kernels/test_plain_python.py tests/physics/test_natural_frequencies.py
 
-.PHONY: help paper verify peers test examples smoke oldest lint docs dist bench convergence clean
+# Tests of modes of meshes, which the libraries of the extra `fast` factorise.
+MESHES := tests/unit/test_block_lanczos.py tests/unit/test_sparse_bodies.py tests/unit/test_solid_body.py \
+	tests/physics/test_solid_bodies.py
+
+.PHONY: help paper verify peers test examples smoke oldest fast lint docs dist bench convergence clean
 
 help:
 	@echo "make paper        run every case of the paper into results/paper (sets itself up)"
@@ -24,6 +29,7 @@ help:
 	@echo "make examples     all code and commands of the documentation, all examples, the short form of every benchmark"
 	@echo "make smoke        a part of the tests, for other systems and Pythons"
 	@echo "make oldest       the same with the oldest dependencies that pyproject.toml allows, on Python 3.11 or 3.12"
+	@echo "make fast         the tests of meshes with the extra that factorises them faster, of 0.8 GB"
 	@echo "make docs         build the documentation into docs/_build/html, warnings are errors"
 	@echo "make dist         wheel and sdist into dist, both checked, the wheel run on its own; minutes"
 	@echo "make bench        speed as a table of ratios, each measured in one run: C, Siconos, real time, scaling, start-up; minutes"
@@ -84,6 +90,14 @@ smoke: .venv/installed-test
 oldest: .venv-oldest/installed
 	NUMBA_CACHE_DIR=$(CURDIR)/.venv-oldest/compiled $(OLDEST)/python -m pytest -W default --numprocesses 2 $(SMOKE)
 
+.venv-fast/installed: pyproject.toml
+	$(PYTHON) -m venv .venv-fast
+	$(FAST)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable ".[fast,test]"
+	@touch $@
+
+fast: .venv-fast/installed
+	NUMBA_CACHE_DIR=$(CURDIR)/.venv-fast/compiled $(FAST)/python -m pytest --numprocesses 2 $(MESHES)
+
 docs: .venv/installed-docs
 	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
 
@@ -100,4 +114,4 @@ convergence: .venv/installed-all
 	$(BIN)/python examples/papers/laulagnet_2011/step_of_the_exact_scheme.py
 
 clean:
-	rm -rf .venv .venv-oldest dist docs/_build results .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf .venv .venv-oldest .venv-fast dist docs/_build results .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 import scipy.sparse.linalg
+from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
 from ..checks import ArgumentError
@@ -123,8 +124,15 @@ def _pardiso(matrix: Any) -> Solve:
     rows = scipy.sparse.csr_matrix(scipy.sparse.triu(matrix))
     rows.sort_indices()
     solver = import_module("pypardiso").PyPardisoSolver(mtype=2)
-    solver.factorize(rows)
-    return lambda right: np.asarray(solver.solve(rows, np.asfortranarray(right))).reshape(right.shape)
+    # Its library is loaded only now, so that earlier limits of threads do not hold.
+    with threadpool_limits(1):
+        solver.factorize(rows)
+
+    def solve(right: Array) -> Array:
+        with threadpool_limits(1):
+            return np.asarray(solver.solve(rows, np.asfortranarray(right))).reshape(right.shape)
+
+    return solve
 
 
 LIBRARIES = {"sksparse": _cholmod, "pypardiso": _pardiso}

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import scipy.linalg
-import scipy.sparse.linalg
 from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least
 from ..long_tasks import check_wanted
+from .block_lanczos import LONGEST, SETTLED, WIDTH, Inverse, lowest
 from .damping import check_damping_count, damping_rates
 from .factorisation import Solve, factorised
 from .matrix_files import LARGEST_SIZE
@@ -22,16 +22,15 @@ from .reduction import RESIDUAL, Reduction
 
 # Degrees of freedom up to which a dense solution for all modes is faster than a search for some.
 DENSE = 600
-# Negative shift as a share of the squared cutoff: far enough from zero for accuracy, near enough for a fast search.
-SHIFT = 0.01
+# Negative shift as a share of the squared cutoff: far enough from zero for accuracy of rigid modes, near enough for a
+# fast search. Where rigid motions are known, a smaller one, with which static responses take half as many steps.
+SHIFT, SMALL_SHIFT = 0.01, 1e-4
 # Beyond one in so many of all modes a dense solution is faster, where it is possible.
 DENSE_SHARE = 8
 # Most modes in a search; a thousand take minutes.
 MOST_MODES = 2000
-# Modes requested in the first search.
-FIRST_SEARCH = 24
-# Tolerance of the Ritz value that shows whether a mode was missed.
-COARSE = 1e-2
+# Vectors of a search for each mode that may be found before another way is taken.
+VECTORS = 4
 # Largest error of the static compliance at a patch that is due to residual shapes left out, relative to that of all
 # elastic modes.
 COMPLIANCE = 1e-3
@@ -132,7 +131,8 @@ def _reduced(problem: SparseProblem, cutoff: float | None) -> SparseReduction:
     largest = float(np.max(problem.stiffness.diagonal() / problem.mass.diagonal()))
     solve: Solve | None = None
     # A smaller shift would be lost in the rounding of the largest frequencies.
-    shift = max(SHIFT * highest**2, 1e3 * ROUND_OFF * largest) if cutoff is not None else 0.0
+    share = SHIFT if problem.rigid is None else SMALL_SHIFT
+    shift = max(share * highest**2, 1e3 * ROUND_OFF * largest) if cutoff is not None else 0.0
     if cutoff is None or size <= DENSE:
         squared, shapes = _all_modes(problem)
     else:
@@ -165,11 +165,14 @@ def residual_shapes(problem: SparseProblem, solve: Solve, kept: Array) -> Array:
     """
     forces = problem.every_force
     moved = problem.mass @ kept
-    sizes = np.sqrt(np.maximum(np.sum(forces * solve(forces), axis=0), 0.0))
-    forces = forces[:, sizes > 0.0] / sizes[sizes > 0.0]
+    first = solve(forces)
+    sizes = np.sqrt(np.maximum(np.sum(forces * first, axis=0), 0.0))
+    felt = sizes > 0.0
+    forces, first = forces[:, felt] / sizes[felt], first[:, felt] / sizes[felt]
     forces = forces - moved @ (kept.T @ forces)
-    parts = [forces[:, start : start + AT_ONCE] for start in range(0, forces.shape[1], AT_ONCE)]
-    answers = np.hstack([_static_answers(problem.stiffness, solve, part, kept, moved) for part in parts])
+    parts = [slice(start, start + AT_ONCE) for start in range(0, forces.shape[1], AT_ONCE)]
+    found = [_static_answers(problem.stiffness, solve, forces[:, part], kept, moved, first[:, part]) for part in parts]
+    answers = np.hstack(found or [forces])
     own = np.sqrt(np.maximum(np.sum(answers * (problem.stiffness @ answers), axis=0), 0.0))
     # If the modes kept give the whole response to a force, only rounding remains.
     answers = answers[:, own > RESIDUAL] / own[own > RESIDUAL]
@@ -200,20 +203,20 @@ def _compressed(problem: SparseProblem, angular: Array, shapes: Array, residual:
     return np.asarray(residual @ np.hstack([kept, others @ ways[:, share**2 > COMPLIANCE]]))
 
 
-def _static_answers(stiffness: Any, solve: Solve, forces: Array, kept: Array, moved: Array) -> Array:
+def _static_answers(stiffness: Any, solve: Solve, forces: Array, kept: Array, moved: Array, first: Array) -> Array:
     """Solve ``K a = f`` for forces orthogonal to the modes kept, by conjugate gradients with the shifted factors.
 
     Orthogonal to these modes ``(K + s M)^-1 K`` lies between ``1 / (1 + s / w²)`` and 1, so that a few steps reach
-    round-off.
+    round-off. The `first` responses of the factors may include those of the modes kept, which are removed.
     """
     answers, left = np.zeros_like(forces), forces.copy()
     way, before = np.zeros_like(forces), np.ones(forces.shape[1])
     goal = float(np.finfo(float).eps) * np.linalg.norm(forces, axis=0)
     best = np.full(forces.shape[1], np.inf)
-    for _ in range(MOST_STEPS):
+    for step in range(MOST_STEPS):
         check_wanted()
-        guess = solve(left)
-        guess -= kept @ (moved.T @ guess)
+        guess = solve(left) if step else first
+        guess = guess - kept @ (moved.T @ guess)
         now = np.sum(left * guess, axis=0)
         way = guess + way * (now / before)
         against = stiffness @ way
@@ -261,53 +264,40 @@ def _all_modes(problem: SparseProblem) -> tuple[Array, Array]:
 
 
 def _modes_up_to(problem: SparseProblem, solve: Solve, shift: float, highest: float) -> tuple[Array, Array]:
-    """Return squared frequencies and shapes of the modes up to an angular frequency, and of some beyond.
+    """Return squared frequencies and shapes of the modes up to an angular frequency, and perhaps of some beyond.
 
-    Each search excludes the modes found before, until the highest lies beyond. A last search looks for modes that
-    were missed, such as one of a pair of equal frequency.
+    A last search beside the modes found shows that none was missed.
     """
     size = problem.mass.shape[0]
-    found = np.zeros((size, 0)) if problem.rigid is None else problem.rigid
-    rigid, many = found.shape[1], FIRST_SEARCH
+    known = np.zeros((size, 0)) if problem.rigid is None else problem.rigid
+    found, rigid = known, known.shape[1]
+    most = size // DENSE_SHARE if size <= LARGEST_SIZE else MOST_MODES
+    # The same start in each run, so that the modes of a body are always identical.
+    random = np.random.default_rng(rigid)
+    block = solve(problem.mass @ random.standard_normal((size, WIDTH)))
+    tolerance = SETTLED
     while True:
-        if found.shape[1] + many > (size // DENSE_SHARE if size <= LARGEST_SIZE else MOST_MODES):
+        inverse = Inverse(problem.mass, solve, shift, found)
+        longest = min(LONGEST, VECTORS * (most + WIDTH - found.shape[1]))
+        part = lowest(inverse, block, highest**2, 1 if found.shape[1] == rigid else 0, longest, tolerance)
+        found = _beside(problem.mass, np.hstack([found, part.shapes]), found.shape[1])
+        if found.shape[1] > most:
             if size <= LARGEST_SIZE:
                 return _all_modes(problem)
             raise ArgumentError(
                 "cutoff", f"leave at most {MOST_MODES} modes of a mesh", got=f"{highest / (2.0 * np.pi):.6g} Hz"
             )
-        values, vectors = _search(problem, solve, shift, found, many)
-        found = _beside(problem.mass, np.hstack([found, vectors]), rigid)
-        if values.max() <= highest**2:
-            many *= 2
-            continue
-        nearest, _ = _search(problem, solve, shift, found, 1, COARSE)
-        if nearest[0] + shift > (1.0 + 2.0 * COARSE) * (highest**2 + shift):
-            break
+        if part.is_complete:
+            if not part.squared.size or part.squared[-1] > highest**2 or found.shape[1] == size:
+                break
+            block = random.standard_normal((size, WIDTH))
+        else:
+            block = part.following
+            # A search that finds nothing has reached the rounding of the factors.
+            tolerance = SETTLED if part.squared.size else 10.0 * tolerance
     vectors = found[:, rigid:]
     squared, turned = scipy.linalg.eigh(vectors.T @ (problem.stiffness @ vectors))
     return squared, vectors @ turned
-
-
-def _search(
-    problem: SparseProblem, solve: Solve, shift: float, found: Array, many: int, tolerance: float = 0.0
-) -> tuple[Array, Array]:
-    """Return the lowest squared frequencies except those of the modes found before, and their shapes."""
-    mass, size = problem.mass, problem.mass.shape[0]
-    moved = mass @ found
-
-    def inverse(vector: Array) -> Array:
-        check_wanted()
-        answer = solve(vector - moved @ (found.T @ vector))
-        return answer - found @ (moved.T @ answer)
-
-    operator = scipy.sparse.linalg.LinearOperator((size, size), matvec=inverse, dtype=float)
-    # The same start in each run, so that the modes of a body are always identical.
-    start = np.random.default_rng(found.shape[1]).standard_normal(size)
-    values, vectors = scipy.sparse.linalg.eigsh(
-        problem.stiffness, k=many, M=mass, sigma=-shift, OPinv=operator, v0=inverse(mass @ start), tol=tolerance
-    )
-    return values, vectors
 
 
 def _beside(mass: Any, vectors: Array, exact: int) -> Array:
