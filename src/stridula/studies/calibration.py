@@ -33,6 +33,8 @@ from ..checks import (
 from ..integration.bars import bar
 from ..linear.equilibrium import HELD, JAMMED, LIFTED_OFF
 from ..linear.structure import SLIDING
+from ..records.provenance import toml
+from ..scenarios.load import with_matrices
 from ..scenarios.read import read_tables
 from ..version import __version__
 from .measures import MEASURES, Value, value_of
@@ -263,7 +265,9 @@ def _identity(source: Any, asked: Mapping[str, Any]) -> dict[str, str]:
 
     of = {"function": words(source)}
     if not callable(source):
-        of = {"scenario": json.dumps(read_tables(source), ensure_ascii=False, default=repr)}
+        tables = read_tables(source)
+        # With the content of the files that it names.
+        of = {"scenario": toml(with_matrices(tables, tables))}
     machines = ("workers", "client")
     options = {name: value for name, value in asked["options"].items() if name not in machines}
     text = json.dumps({**asked, "options": options}, ensure_ascii=False, default=words)
