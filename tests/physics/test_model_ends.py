@@ -208,3 +208,37 @@ def test_frequencies_with_closed_contacts_are_those_of_the_whole_matrix(seed):
     vibrates = frequency > rounding
     assert vibrates.any()
     assert (shares[:, vibrates].sum(axis=0) <= 1.0 + 1e-9).all()
+
+
+def sprung(held: float, pressed: float = 1e7) -> st.System:
+    """A chain with a cutoff of 2 kHz and a mass, both on a belt under falling friction, held along it by springs."""
+    size = 40
+    chain = 1e9 * (2.0 * np.eye(size) - np.eye(size, k=1) - np.eye(size, k=-1))
+    body = st.ReducedBody(np.eye(size), chain, {"foot": (3, 30)}, cutoff=2e3, residual_flexibility=False, name="chain")
+    mass, track = st.PointMass(1.0, name="mass"), st.RigidTrack(velocity=0.2, name="belt")
+    law = st.ExponentialWeakening(0.5, 0.2, 0.5)
+    contacts = [
+        st.PointContact(body.at("foot"), track, friction=law, stiffness=st.LinearStiffness(1e7), name="foot"),
+        st.PointContact(mass.centre, track, friction=law, stiffness=st.LinearStiffness(pressed), name="mass"),
+    ]
+    springs = [st.Spring(point, stiffness=held, direction="x") for point in (body.at("foot"), mass.centre)]
+    loads = [st.Force(point, y=-100.0) for point in (body.at("foot"), mass.centre)]
+    return st.System(contacts, loads, springs)
+
+
+def test_modes_beyond_every_cutoff_are_flagged():
+    """Of bodies with a cutoff alone: a mass vibrates on its springs at any frequency."""
+    soft, fast, stiff = (st.sliding_stability(sprung(*one)) for one in ((1e7,), (1e7, 1e11), (1e12,)))
+    assert not soft.beyond_cutoff.any()
+    assert (float(soft.frequency.max()), float(fast.frequency.max())) == pytest.approx((2e3, 5e4), rel=0.1)
+    assert not fast.beyond_cutoff.any()
+    # Both on springs of 1e12 N/m: that of the mass is where the mass is, that of the chain lacks its other modes.
+    beyond = stiff.frequency.values > 2e3
+    assert int((beyond & stiff.unstable.values).sum()) == 2
+    chain = stiff.energy_share.sel(body="chain").values > 0.5
+    np.testing.assert_array_equal(stiff.beyond_cutoff, beyond & chain)
+    assert int(stiff.beyond_cutoff.sum()) == 1
+    words = "growing mode lies above the cutoff of every body, 2000 Hz"
+    assert [words in one.attrs["notes"] for one in (soft, fast, stiff)] == [False, False, True]
+    # Without a cutoff nothing lies beyond.
+    assert not st.sliding_stability(pressed(st.RigidTrack(velocity=1.0))).beyond_cutoff.any()

@@ -20,6 +20,8 @@ from ..system import System
 
 # Time in which forces on contacts with a stiffness are expected, for notes on their frequency [s].
 AHEAD = 1.0
+# Share of the kinetic energy from which bodies determine a mode.
+OF_THE_BODIES = 0.5
 
 
 def sliding_stability(
@@ -67,9 +69,11 @@ def sliding_stability(
     -------
     xarray.Dataset
         Over ``mode``, by increasing frequency: ``frequency`` [Hz], ``growth_rate`` [1/s], ``damping_ratio`` [1],
-        ``unstable``, ``energy_share`` of each ``body`` in the kinetic energy [1], and ``mode_shape``, real and
-        imaginary ``part`` of the modal displacements. For each contact its ``status``, forces [N], ``slip_velocity``
-        [m/s], NaN if a force accelerates it and none is given, and ``slip_acceleration`` [m/s²].
+        ``unstable``, ``beyond_cutoff``: whether the frequency lies above the cutoff of every body that has one, and
+        these have half of the kinetic energy or more, so that modes left out would take part; ``energy_share`` of each
+        ``body`` in the kinetic energy [1], and ``mode_shape``, real and imaginary ``part`` of the modal displacements.
+        For each contact its ``status``, forces [N], ``slip_velocity`` [m/s], NaN if a force accelerates it and none is
+        given, and ``slip_acceleration`` [m/s²].
         For the equilibrium ``modal_displacement`` [kg^(1/2) m] over ``coordinate``, as for mode shapes, and the
         displacements along world x and y (``direction``) of each tip, ``tip_displacement`` [m], and of the point of
         the track that it touches, ``track_displacement`` [m]: without rigid motions that nothing holds, and under an
@@ -156,6 +160,8 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
         kinetic /= np.where(shapes.any(axis=0), kinetic.sum(axis=0), 1.0)
     spans = structure.arrays.spans
     share = np.array([kinetic[first:end].sum(axis=0) for first, end in spans.values()]).T
+    unstable = values.real > round_off(structure)
+    limit, beyond = _beyond_cutoff(system, values.imag / (2.0 * np.pi), share)
     body = np.empty(structure.mode_count, dtype=object)
     for name, (first, end) in spans.items():
         body[first:end] = name
@@ -164,7 +170,8 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
         "frequency": ("mode", values.imag / (2.0 * np.pi), described("Hz", "frequency of vibration")),
         "growth_rate": ("mode", values.real, described("1/s", "rate at which the amplitude grows")),
         "damping_ratio": ("mode", ratio, described("1", "damping ratio; below zero where the mode grows")),
-        "unstable": ("mode", values.real > round_off(structure), described("1", "whether the mode grows")),
+        "unstable": ("mode", unstable, described("1", "whether the mode grows")),
+        "beyond_cutoff": ("mode", beyond, described("1", "whether the mode lies above the cutoff of every body")),
         "energy_share": (("mode", "body"), share, described("1", "share of the body in the kinetic energy")),
         "mode_shape": (
             ("mode", "coordinate", "part"),
@@ -199,8 +206,32 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
     attributes = {"equilibrium": equilibrium.kind, "equilibria": equilibrium.found}
     attributes |= {"violated": "; ".join(equilibrium.violated), "round_off": round_off(structure)}
     opened = open_words(structure, equilibrium) if equilibrium.kind == LIFTED_OFF else []
-    attributes["notes"] = "; ".join([*opened, *notes_of(system, structure.arrays, AHEAD)])
+    notes = [*opened, *notes_of(system, structure.arrays, AHEAD)]
+    if count := int(np.sum(unstable & beyond)):
+        lie = "mode lies" if count == 1 else "modes lie"
+        notes.append(
+            f"{count} growing {lie} above the cutoff of every body, {limit:.4g} Hz, without the modes left out"
+        )
+    attributes["notes"] = "; ".join(notes)
     return xr.Dataset(data, coordinates, attributes)
+
+
+def _beyond_cutoff(system: System, frequency: Array, share: Array) -> tuple[float, Array]:
+    """Return the highest cutoff of the bodies [Hz], and which modes of these bodies lie above it.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    frequency : ndarray, shape (modes,)
+        Frequencies [Hz].
+    share : ndarray, shape (modes, bodies)
+        Share of each body in the kinetic energy.
+    """
+    cutoffs = [getattr(body, "cutoff", None) for body in system.bodies]
+    cut = np.array([one is not None for one in cutoffs])
+    limit = max((float(one) for one in cutoffs if one is not None), default=np.inf)
+    return limit, (frequency > limit) & (share[:, cut].sum(axis=1) >= OF_THE_BODIES)
 
 
 def _along_tangents(along: Array, across: Array | float, ways: Array) -> Array:

@@ -87,6 +87,11 @@ def _closing(modes: xr.Dataset, given: bool) -> list[str]:
     about = " about the contacts as given" if given else ""
     growing = f"{counted(grows, 'mode')} {'grows' if grows == 1 else 'grow'}" if grows else "no mode grows"
     lines.append(f"Equilibrium: {kind}; {growing} (of {modes.sizes['mode']}){about}.")
+    if count := int((modes["unstable"] & modes["beyond_cutoff"]).sum()):
+        lies = "lies" if count == 1 else "lie"
+        lines.append(
+            f"{counted(count, 'growing mode')} {lies} above the cutoff of every body, without the modes left out."
+        )
     if modes.attrs["equilibria"] in EQUILIBRIA:
         lines.append(EQUILIBRIA[modes.attrs["equilibria"]])
     return [*lines, *([f"Violated: {modes.attrs['violated']}."] if modes.attrs["violated"] else [])]
