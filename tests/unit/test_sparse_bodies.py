@@ -1,13 +1,17 @@
-"""Reduced bodies of sparse matrices that are too large for dense ones."""
+"""Reduced bodies of sparse matrices that are too large for dense ones, and of dense ones with a cutoff."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 import scipy.io
+import scipy.linalg
 import scipy.sparse
 
 import stridula as st
+from stridula.bodies import reduced_body
+from stridula.bodies.reduction import reduce_body
+from stridula.bodies.sparse_reduction import DENSE
 
 SIZE = 5000
 POINTS = {"end": (SIZE - 1, None), "middle": (SIZE // 2, None)}
@@ -101,3 +105,78 @@ def test_requirements_of_large_bodies_are_reported(tmp_path):
         with pytest.raises(st.ArgumentError, match=words) as caught:
             make()
         assert "\n" not in str(caught.value)
+
+
+def plate(kind: str):
+    """Mass and stiffness of a square grid of masses with springs to the ground along x and y, or a full matrix.
+
+    Units of every second degree of freedom differ, as those of rotations do.
+    """
+    side, random = 19, np.random.default_rng(5)
+    size = 2 * side**2
+    beside = np.eye(side, k=1) + np.eye(side, k=-1)
+    net = 4.0 * np.eye(side**2) - np.kron(beside, np.eye(side)) - np.kron(np.eye(side), beside)
+    stiffness = np.kron(net, np.array([[2.0, 0.3], [0.3, 1.0]]))
+    if kind == "free":
+        links = np.kron(np.kron(beside, np.eye(side)) + np.kron(np.eye(side), beside), np.eye(2))
+        stiffness = np.diag(links.sum(axis=1)) - links
+    if kind == "full":
+        turned = scipy.linalg.qr(random.standard_normal((size, size)))[0]
+        stiffness = turned.T @ stiffness @ turned
+        stiffness = 0.5 * (stiffness + stiffness.T)
+    mass = np.diag(random.uniform(1.0, 2.0, size))
+    units = np.where(np.arange(size) % 2, 1.0, 30.0)
+    return np.outer(units, units) * mass, 1e6 * np.outer(units, units) * stiffness, units
+
+
+@pytest.mark.parametrize("damping", ["ratio", "matrix"])
+@pytest.mark.parametrize("kind", ["held", "free", "full"])
+def test_dense_matrices_with_a_cutoff_have_the_modes_of_all(kind, damping):
+    """The search for some modes against the solution for all, from which most are cut off."""
+    mass, stiffness, units = plate(kind)
+    size = len(mass)
+    assert size > DENSE
+    losses = 1e-5 * stiffness + 2.0 * mass + (kind != "full") * np.diag(np.arange(size) * 0.1 * units**2)
+    words = {
+        "points": {"corner": (0, 1), "middle": (size // 2, None)},
+        "translation": np.stack([np.arange(size) % 2 == 0, np.arange(size) % 2 == 1]) / units,
+        "damping": losses if damping == "matrix" else 0.02,
+        "cutoff": 100.0,
+    }
+    body = st.ReducedBody(mass, stiffness, **words)
+    found, known = body.modes(), reduce_body(body)
+    modes = known.modes
+    assert 10 < (~modes.massless).sum() < size // 8
+    assert found.massless.sum() == modes.massless.sum() > 0
+    held = ~modes.massless
+    assert (found.angular_frequency == 0.0).sum() == (2 if kind == "free" else 0)
+    np.testing.assert_allclose(found.angular_frequency[held], modes.angular_frequency[held], rtol=1e-9)
+    traces = [
+        np.concatenate([rows @ shapes for rows in body.points.values()]) for shapes in (body.shapes, known.shapes)
+    ]
+    soft = [np.where(one.stiffness > 0.0, one.stiffness, np.inf) for one in (found, modes)]
+    flexible = [(trace / one) @ trace.T for trace, one in zip(traces, soft, strict=True)]
+    np.testing.assert_allclose(flexible[0], flexible[1], atol=1e-9 * np.abs(flexible[1]).max())
+    # Quantities that do not depend on the choice of shapes of equal frequency: rates of decay at the points.
+    lossy = [np.diag(one.damping_rate) if one.damping_matrix is None else one.damping_matrix for one in (found, modes)]
+    decays = [trace @ one @ trace.T for trace, one in zip(traces, lossy, strict=True)]
+    np.testing.assert_allclose(decays[0], decays[1], atol=1e-8 * np.abs(decays[1]).max())
+    assert (found.damping_matrix is None) == (modes.damping_matrix is None)
+    moved = [one.translation @ trace.T for trace, one in zip(traces, (found, modes), strict=True)]
+    np.testing.assert_allclose(moved[0], moved[1], atol=1e-8 * np.abs(moved[1]).max())
+
+
+@pytest.mark.parametrize("large", [True, False])
+def test_errors_of_dense_matrices_do_not_depend_on_the_way(large, monkeypatch):
+    """A stiffness that is not positive semidefinite, a cutoff below the first mode, too many ratios of damping."""
+    if not large:
+        monkeypatch.setattr(reduced_body, "DENSE", 10_000)
+    mass, stiffness, _ = plate("held")
+    for changes, words in (
+        ({"stiffness": stiffness - 1e6 * np.diag(np.diag(mass))}, "stiffness must be positive semidefinite, got the"),
+        ({"cutoff": 1e-3}, "cutoff must leave at least one mode .first at 27.9394 Hz"),
+        ({"damping": [0.1, 0.2]}, "damping must have one ratio or 5, one for each mode kept, got 2"),
+    ):
+        given = {"mass": mass, "stiffness": stiffness, "points": {"corner": (0, 1)}, "cutoff": 60.0} | changes
+        with pytest.raises(st.ArgumentError, match=words):
+            st.ReducedBody(**given)

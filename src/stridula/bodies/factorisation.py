@@ -9,6 +9,7 @@ from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
+import scipy.linalg
 import scipy.sparse
 import scipy.sparse.linalg
 from threadpoolctl import threadpool_limits
@@ -18,6 +19,8 @@ from ..checks import ArgumentError
 
 # Nodes below which a part of a mesh is not cut further.
 SMALLEST_PART = 60
+# Share of entries that are not zero above which factors are dense.
+FULL = 0.1
 
 Solve = Callable[[Array], Array]
 
@@ -25,7 +28,8 @@ Solve = Callable[[Array], Array]
 def factorised(matrix: Any, order: Array | None = None) -> Solve:
     """Return a function that solves linear systems with a sparse symmetric positive definite matrix.
 
-    CHOLMOD (scikit-sparse) or Pardiso (pypardiso) factorise it if they are installed, else SuperLU.
+    CHOLMOD (scikit-sparse) or Pardiso (pypardiso) factorise it if they are installed, else SuperLU; LAPACK if a
+    tenth of it is not zero.
 
     Parameters
     ----------
@@ -39,6 +43,8 @@ def factorised(matrix: Any, order: Array | None = None) -> Solve:
     ValueError
         If the factors do not fit into memory.
     """
+    if matrix.nnz > FULL * matrix.shape[0] ** 2:
+        return _dense(matrix)
     for package, make in LIBRARIES.items():
         if find_spec(package) is not None:
             # An installed package may lack its shared library.
@@ -83,6 +89,11 @@ def dissection(graph: Any, places: Array) -> Array:
         order.append(high[between])
         parts += [part[low], high[~between]]
     return np.concatenate(order[::-1])
+
+
+def _dense(matrix: Any) -> Solve:
+    factors = scipy.linalg.cho_factor(matrix.toarray(), lower=True, overwrite_a=True, check_finite=False)
+    return lambda right: np.asarray(scipy.linalg.cho_solve(factors, right, check_finite=False))
 
 
 def _superlu(matrix: Any, order: Array | None) -> Solve:

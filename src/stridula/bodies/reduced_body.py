@@ -38,7 +38,7 @@ from .matrix_input import (
 from .modes import Modes
 from .named_points import NamedPoints
 from .reduction import Reduction, reduce_body
-from .sparse_reduction import reduce_sparse_body
+from .sparse_reduction import DENSE, reduce_large_body, reduce_sparse_body
 
 FILES = ("path", "mass", "stiffness")
 # Most modes of a lumped model: a finite-element model has motions that are not physical.
@@ -385,7 +385,10 @@ class ReducedBody(NamedPoints):
     @cached_property
     def _reduction(self) -> Reduction:
         with search_told(self, self.mass.shape[0]):
-            return reduce_sparse_body(self) if stays_sparse(self.mass) else reduce_body(self)
+            if stays_sparse(self.mass):
+                return reduce_sparse_body(self)
+            is_large = self.cutoff is not None and self.mass.shape[0] > DENSE
+            return reduce_large_body(self) if is_large else reduce_body(self)
 
     def _check_large(self) -> None:
         """Raise ValueError if sparse matrices lack a cutoff or the mass matrix is not positive definite."""

@@ -46,13 +46,20 @@ def reduce_body(body: Any) -> Reduction:
         raise ArgumentError(
             "cutoff", f"leave at least one mode (first at {at_least(first)} Hz)", body.cutoff, got=f"{body.cutoff!r} Hz"
         )
-    rates, matrix = _damping(body.damping, angular, shapes, kept)
+    rates, matrix = damping_in_modes(body.damping, angular, shapes, kept)
     residual = np.zeros((len(shapes), 0))
     if body.residual_flexibility and not kept.all():
         residual = _residual_shapes(body, angular[~kept], shapes[:, ~kept])
+    return reduction_of(body, angular[kept], shapes[:, kept], residual, rates, matrix)
+
+
+def reduction_of(
+    body: Any, angular: Array, shapes: Array, residual: Array, rates: Array, matrix: Array | None
+) -> Reduction:
+    """Return the modes of a body and its residual shapes, with the damping of the modes."""
     count = residual.shape[1]
-    angular, rates = np.append(angular[kept], np.full(count, np.inf)), np.append(rates, np.zeros(count))
-    shapes = np.hstack([shapes[:, kept], residual])
+    angular, rates = np.append(angular, np.full(count, np.inf)), np.append(rates, np.zeros(count))
+    shapes = np.hstack([shapes, residual])
     shapes.flags.writeable = False
     matrix = None if matrix is None else np.pad(matrix, (0, count))
     translation = np.zeros((len(next(iter(body.points.values()))), angular.size))
@@ -113,13 +120,29 @@ def _all_modes(body: Any) -> tuple[Array, Array]:
     return np.sqrt(np.where(squared <= threshold, 0.0, squared)), scale[:, None] * shapes
 
 
-def _damping(damping: Any, angular: Array, shapes: Array, kept: Array) -> tuple[Array, Array | None]:
-    """Return the damping of the modes kept, and its matrix where that is not diagonal."""
+def damping_in_modes(
+    damping: Any, angular: Array, shapes: Array, kept: Array, largest: float = 0.0
+) -> tuple[Array, Array | None]:
+    """Return the damping of the modes kept, and its matrix where that is not diagonal.
+
+    Parameters
+    ----------
+    damping : float, ndarray or DampingLaw
+        Damping of the body.
+    angular : ndarray, shape (modes,)
+        Angular frequencies [rad/s].
+    shapes : ndarray, shape (n, modes)
+        Mass-normalised shapes.
+    kept : ndarray of bool, shape (modes,)
+        Mask of the modes kept.
+    largest : float, optional
+        Least value of the largest modal damping [1/s], for its rounding, if these are not all modes.
+    """
     if not isinstance(damping, np.ndarray) or damping.ndim == 1:
         return damping_rates(damping, angular[kept]), None
     matrix = shapes.T @ damping @ shapes
     # Taken over all modes: rounding errors of the highest show among the lowest.
-    rounding = ROUND_OFF * float(np.diag(matrix).max())
+    rounding = ROUND_OFF * max(float(np.diag(matrix).max()), largest)
     matrix = 0.5 * (matrix + matrix.T)[np.ix_(kept, kept)]
     diagonal = np.where(np.diag(matrix) > rounding, np.diag(matrix), 0.0)
     coupled = np.abs(matrix) > COUPLING * np.sqrt(np.outer(diagonal, diagonal)) + rounding

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import scipy.linalg
+import scipy.sparse
 from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
@@ -18,7 +19,7 @@ from .factorisation import Solve, factorised
 from .matrix_files import LARGEST_SIZE
 from .matrix_input import ROUND_OFF
 from .modes import Modes
-from .reduction import RESIDUAL, Reduction
+from .reduction import RESIDUAL, Reduction, damping_in_modes, reduce_body, reduction_of
 
 # Degrees of freedom up to which a dense solution for all modes is faster than a search for some.
 DENSE = 600
@@ -99,6 +100,40 @@ def reduce_sparse_body(body: Any) -> Reduction:
     if body.translation is not None:
         moved = body.translation @ body.mass @ found.shapes
     return Reduction(modes_of(found, body.damping, moved), found.shapes)
+
+
+def reduce_large_body(body: Any) -> Reduction:
+    """Return the modes of a `ReducedBody` with a cutoff whose matrices are dense, by a search for these modes alone.
+
+    Matrices that are not positive semidefinite are left to the solution for all modes, which explains the error.
+    """
+    scale = 1.0 / np.sqrt(np.diag(body.mass))
+    both = np.outer(scale, scale)
+    with np.errstate(over="ignore", invalid="ignore"):
+        mass, stiffness = body.mass * both, body.stiffness * both
+    highest = (2.0 * np.pi * body.cutoff) ** 2
+    if not (np.isfinite(stiffness).all() and _is_definite(stiffness + SHIFT * highest * mass)):
+        return reduce_body(body)
+    rows = list(body.points.values()) if body.residual_flexibility else []
+    if body.residual_flexibility and body.translation is not None:
+        rows.append(body.translation @ body.mass)
+    forces = scale[:, None] * np.concatenate(rows).T if rows else np.zeros((len(mass), 0))
+    problem = SparseProblem(scipy.sparse.csr_array(mass), scipy.sparse.csr_array(stiffness), forces)
+    found = reduce_sparse(problem, body.cutoff)
+    massless, shapes = np.isinf(found.angular_frequency), scale[:, None] * found.shapes
+    angular, kept = found.angular_frequency[~massless], shapes[:, ~massless]
+    damped = isinstance(body.damping, np.ndarray) and body.damping.ndim == 2
+    largest = float(np.max(np.diag(body.damping) * scale**2)) if damped else 0.0
+    damping = damping_in_modes(body.damping, angular, kept, np.ones(angular.size, dtype=bool), largest)
+    return reduction_of(body, angular, kept, shapes[:, massless], *damping)
+
+
+def _is_definite(matrix: Array) -> bool:
+    try:
+        np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        return False
+    return True
 
 
 def modes_of(found: SparseReduction, damping: Any, translation: Array) -> Modes:
