@@ -15,6 +15,8 @@ from .declared import Angle, Each, Frequency, Number, Ratio, Time, check_declare
 
 # Relative distance within which a time counts as that of a jump: steps divide a time exactly only up to rounding.
 ROUND_OFF = 1e-12
+# Most points that the text of a history contains.
+FEW = 8
 
 
 class History(Protocol):
@@ -165,7 +167,7 @@ class Harmonic:
         return 2.0 * np.pi * self.frequency * time + self.phase
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Sampled:
     """A history given at points in time, linear between them, constant before the first and after the last.
 
@@ -196,6 +198,11 @@ class Sampled:
                 "time and value", "have the same length, at least 2", got=f"{len(self.time)} and {len(self.value)}"
             )
         self._check_times()
+
+    def __repr__(self) -> str:
+        if len(self.time) <= FEW:
+            return f"Sampled(time={self.time!r}, value={self.value!r})"
+        return f"Sampled({len(self.time)} points from {self.time[0]!r} to {self.time[-1]!r} s)"
 
     def _check_times(self) -> None:
         times = np.array(self.time)

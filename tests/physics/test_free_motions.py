@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -111,3 +113,16 @@ def test_a_braked_free_motion_is_named():
     )
     with pytest.raises(ValueError, match=r"^connections must not brake .*, got block: translation along x$"):
         st.sliding_stability(system, status="sliding")
+
+
+def test_systems_beyond_linear_theory_have_no_words():
+    """A tip carried along a circle is refused by linear theory; a message of a run must not fail with it."""
+    body = disc()
+    tip = st.RigidBody(0.01, 1e-6, {"tip": (0.0, 0.0, 0.0)}, name="ball")
+    contact = st.PointContact(
+        tip.at("tip"), replace(body, turning=0.0).circle((0.1, 0.0, 0.01), velocity=1.0), normal=(0.0, 1.0, 0.0)
+    )
+    system = st.System(contact)
+    with pytest.raises(ValueError, match=r"^track must not be carried along its circle by contact 1 in linear theory"):
+        Structure(system)
+    assert free_words(system) == ""

@@ -15,6 +15,11 @@ def disc(turning=30.0):
     return st.AxisymmetricBody(profile, STEEL, 3e3, "inner", axis=(0.0, 1.0, 0.0), turning=turning, name="disc")
 
 
+def slid():
+    mass = st.PointMass(1.0, name="mass")
+    return st.System(st.PointContact(mass.centre, st.RigidTrack(1.0)), [st.Force(mass.centre, y=-1.0)])
+
+
 def braked(divisions=(2, 1, 2), above=0.0):
     """Return a pad held by many springs over a turning disc, at a height above it."""
     mesh = st.SolidMesh.block((0.03, 0.015, 0.02), divisions).moved((0.095, 0.01 + above, -0.01))
@@ -61,6 +66,8 @@ SHOWN = {
     "DrawnRings": lambda pad, turning: turning.drawn,
     "Turning": lambda pad, turning: turning.modes().turning,
     "ModalBody": lambda pad, turning: st.ModalBody(np.arange(40.0), MANY, name="many"),
+    "Sampled": lambda pad, turning: st.Sampled(np.arange(2000.0), np.arange(2000.0)),
+    "PlainRecord": lambda pad, turning: st.simulate_many([slid()], 1e-3, labelled=False)[0],
     "ReducedBody": lambda pad, turning: st.ReducedBody(
         np.eye(40), np.eye(40), {name: rows[:2] for name, rows in MANY.items()}
     ),
@@ -74,6 +81,11 @@ def test_the_text_of_arrays_is_one_short_line(name):
     assert "\n" not in text
     assert "array" not in text
     assert len(text) < 320
+
+
+def test_a_short_history_is_written_out():
+    assert repr(st.Sampled((0.0, 1.0), (2, 3.0))) == "Sampled(time=(0.0, 1.0), value=(2.0, 3.0))"
+    assert repr(st.Sampled(np.arange(20.0), np.ones(20))) == "Sampled(20 points from 0.0 to 19.0 s)"
 
 
 def test_texts_of_modes_and_faces_count_them():

@@ -54,8 +54,14 @@ def not_held(structure: Structure, free: Array) -> ArgumentError:
 
 
 def free_words(system: System) -> str:
-    """Return the rigid motions that contacts, connections and drives leave free, in words; empty if there are none."""
-    structure = Structure(system, 0.0)
+    """Return the rigid motions that contacts, connections and drives leave free, in words.
+
+    Empty if there are none, or if linear theory does not describe the system.
+    """
+    try:
+        structure = Structure(system, 0.0)
+    except ArgumentError:
+        return ""
     free = structure.free_motions(normals_of(structure))
     return words_of(structure, free) if free.shape[1] else ""
 
@@ -79,7 +85,7 @@ def words_of(structure: Structure, free: Array) -> str:
         name = system.body_name(body)
         own = moved[slice(*arrays.spans[name])]
         if np.abs(own).max(initial=0.0) > ROUNDING * np.abs(moved).max():
-            found.append(f"{name}: {listed(_motions(structure, body, own, origins), ' and ')}")
+            found.append(f"{name}: {' and '.join(_motions(structure, body, own, origins))}")
     return listed(found, "; ")
 
 
@@ -110,7 +116,7 @@ def _motions(structure: Structure, body: Any, own: Array, origins: dict[Any, Arr
     still = shift @ ways[count:].T
     directions = scipy.linalg.orth(still, rcond=ROUNDING) if np.abs(still).max(initial=0.0) > 0.0 else still[:, :0]
     if directions.shape[1]:
-        yield f"translation along {listed(map(_axis, _nicest(directions).T), ' and ')}"
+        yield f"translation along {' and '.join(map(_axis, _nicest(directions).T))}"
     if not count:
         return
     turns = _nicest(scipy.linalg.orth(turn, rcond=ROUNDING))
@@ -137,7 +143,7 @@ def _without_places(moved: Array) -> Iterator[str]:
     turns = int(np.sum(share > ROUNDING * largest))
     still = moved.mean(axis=0) @ ways[turns:].T
     if np.abs(still).max(initial=0.0) > ROUNDING * largest:
-        yield f"translation along {listed(map(_axis, _nicest(scipy.linalg.orth(still, rcond=ROUNDING)).T), ' and ')}"
+        yield f"translation along {' and '.join(map(_axis, _nicest(scipy.linalg.orth(still, rcond=ROUNDING)).T))}"
     if turns:
         yield "rotation" if turns == 1 else f"{turns} rotations"
 

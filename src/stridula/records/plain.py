@@ -10,14 +10,14 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
-from ..checks import brief, listed, suggestion
+from ..checks import brief, counted, listed, suggestion
 from .variables import ALONG_TANGENTS
 
 # Names of the dimensions of variables over time, by their number besides the contact.
 AFTER_TIME = ((), ("contact_status",))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PlainRecord:
     """A record of `simulate` as plain arrays: ``run["normal_force"]`` is an array over time.
 
@@ -42,6 +42,9 @@ class PlainRecord:
     contacts: Sequence[str]
     attrs: dict[str, Any]
     surfaces: Sequence[str] = ()
+
+    def __repr__(self) -> str:
+        return f"PlainRecord({counted(len(self.time), 'sample')}, contacts {listed(self.contacts)}, {listed(self)})"
 
     def __getitem__(self, name: str) -> Array:
         """Return a variable."""
