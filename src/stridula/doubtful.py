@@ -22,10 +22,14 @@ class DoubtfulValue(UserWarning):
     """A value that is allowed but probably mistaken: a Young's modulus in GPa, a mesh in mm."""
 
 
-def warn_of(doubts: Iterable[str]) -> None:
+class LeftOut(DoubtfulValue):
+    """Content of a file that is not read."""
+
+
+def warn_of(doubts: Iterable[str], kind: type[DoubtfulValue] = DoubtfulValue) -> None:
     """Warn of each doubt, in the name of the line outside of the package that led to it."""
     for words in doubts:
-        warnings.warn(words, DoubtfulValue, stacklevel=_depth())
+        warnings.warn(words, kind, stacklevel=_depth())
 
 
 def doubts_of_modulus(name: str, modulus: float) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -34,7 +35,10 @@ def record(*names: str) -> None:
 # Files assumed in the folder of a reader.
 GIVEN: dict[str, Callable[[], object]] = {
     "README.md": lambda: record("other.nc"),
-    "command-line.rst": lambda: record("before.nc", "after.nc"),
+    "command-line.rst": lambda: (
+        record("before.nc", "after.nc"),
+        shutil.copy(ROOT / "examples" / "tutorials" / "brake.inp", "brake.inp"),
+    ),
     "scenarios.rst": lambda: (
         record("squeal.nc"),
         Path("my-squeal.toml").write_text(blocks(SCENARIOS, "toml")[0][1], encoding="utf-8"),

@@ -193,7 +193,7 @@ def test_bodies_in_space_are_drawn_with_arrows_and_names(name, monkeypatch):
     lines = np.concatenate([np.column_stack(line.get_data_3d()) for line in axes.get_lines()])
     x, y, _ = plot.scenes.proj3d.proj_transform(*lines.T, axes.get_proj())
     at = figure.transFigure.inverted().transform(axes.transData.transform(np.stack([x, y], axis=1)))
-    left, low, width, height = plot.space_drawings.ROOM
+    left, low, width, height = plot.space_sketches.ROOM
     assert (at > [left, low]).all()
     assert (at < [left + width, low + height]).all()
     assert np.ptp(at, axis=0).max() > 0.5 * min(width, height)

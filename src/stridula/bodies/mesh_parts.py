@@ -15,6 +15,7 @@ from . import solid_files
 from .decks.deck import Elastic
 from .finite_files import check_finite_in
 from .sections import Material
+from .solid_kinds import words_of
 from .solid_mesh import SolidMesh
 
 
@@ -33,12 +34,29 @@ class MeshPart:
         Materials that the file gives completely, by the name of their group of elements.
     missing : str
         The properties that the file does not give, in words; empty if `materials` are known.
+    cells : mapping
+        Number of elements of each kind in the file, such as ``"wedges of 6 nodes"``; the mesh may have other elements.
     """
 
     name: str
     mesh: SolidMesh
     given: Mapping[str, Material] = field(default_factory=dict)
     missing: str = ""
+    cells: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def mass(self) -> float:
+        """Mass of its elements [kg].
+
+        Raises
+        ------
+        ValueError
+            As for `materials`.
+        """
+        given, volume = self.materials, self.mesh.volume
+        if not isinstance(given, Mapping):
+            return float(given.density * volume.sum())
+        return float(sum(one.density * volume[self.mesh.volumes[of]].sum() for of, one in given.items()))
 
     @property
     def materials(self) -> Material | Mapping[str, Material]:
@@ -111,7 +129,8 @@ def _part(path: str | os.PathLike[str], name: str, read: solid_files.ReadPart, l
     covered = sum(len(mesh.volumes[of]) for of in read.materials)
     if covered != len(mesh.elements):
         unknown.append(f"{named(path)} gives a material to {covered} of {len(mesh.elements)} elements")
-    return MeshPart(name, mesh, MappingProxyType(given), listed(unknown) if unknown else "")
+    cells = {words_of(kind): number for kind, number in read.cells.items()}
+    return MeshPart(name, mesh, MappingProxyType(given), listed(unknown) if unknown else "", MappingProxyType(cells))
 
 
 def _lacking(one: Elastic) -> list[str]:

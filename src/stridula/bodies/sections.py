@@ -44,11 +44,16 @@ class Material:
     @property
     def doubts(self) -> list[str]:
         """Values that are probably mistaken, in words."""
-        found = doubts_of_modulus("Young's modulus", self.young)
-        if not DENSITY[0] <= self.density <= DENSITY[1]:
-            unit = "t/mm3, as in finite-element programs" if self.density < TONNES else "g/cm3"
-            found.append(f"density of {self.density:.4g} kg/m3; did you mean {unit}?")
-        return found
+        return doubts_of_material(self.young, self.density)
+
+
+def doubts_of_material(young: float, density: float) -> list[str]:
+    """Return doubts about Young's modulus [Pa] and density [kg/m³]."""
+    found = doubts_of_modulus("Young's modulus", young)
+    if not DENSITY[0] <= density <= DENSITY[1]:
+        unit = "t/mm3, as in finite-element programs" if density < TONNES else "g/cm3"
+        found.append(f"density of {density:.4g} kg/m3; did you mean {unit}?")
+    return found
 
 
 @dataclass(frozen=True)

@@ -41,6 +41,15 @@ def check_elements(kind: ElementKind, nodes: Array, elements: Array) -> None:
         )
 
 
+def volumes(kind: ElementKind, nodes: Array, elements: Array) -> Array:
+    """Return the volume of each element [m³], shape (elements,)."""
+    points, weights = _integration(kind)
+    found, (_, slopes) = np.empty(len(elements)), shape_functions(kind, points.T)
+    for part in _parts(np.arange(len(elements))):
+        found[part] = np.linalg.det(np.einsum("eni,qnj->eqij", nodes[elements[part]], slopes)) @ weights
+    return found
+
+
 def shape_functions(kind: ElementKind, places: Array) -> tuple[Array, Array]:
     """Return shape functions and their derivatives at coordinates in the unit element.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import os
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +16,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, in_one_line, listed
 from ..disk import named, one_line, opened
-from ..doubtful import warn_of
+from ..doubtful import LeftOut, warn_of
 from ..extras import named_extras
 from .cut_elements import can_be_cut, cut_into_tetrahedra, triangles_of
 from .decks.abaqus import read_abaqus
@@ -88,11 +89,14 @@ class ReadPart:
         Elastic materials by the name of their group of elements.
     names : dict
         Names of the materials by that of their group.
+    cells : dict
+        Number of solid elements of each kind in the file, by the name of the kind in meshio.
     """
 
     mesh: dict[str, Any]
     materials: dict[str, Elastic]
     names: dict[str, str]
+    cells: dict[str, int]
 
 
 def read_each(path: str | os.PathLike[str]) -> dict[str, ReadPart]:
@@ -110,7 +114,13 @@ def read_each(path: str | os.PathLike[str]) -> dict[str, ReadPart]:
 
 def _read_part(held: Held) -> ReadPart:
     held, names = with_materials(held)
-    return ReadPart(_mesh(held), {name: held.materials[of] for name, of in names.items()}, names)
+    cells = Counter[str]()
+    for block in held.cells:
+        if block.type.startswith(SOLID) and len(block.data):
+            cells[block.type] += len(block.data)
+    return ReadPart(
+        _mesh(held), {name: held.materials.get(of, Elastic()) for name, of in names.items()}, names, dict(cells)
+    )
 
 
 def read_held(path: str | os.PathLike[str]) -> Held:
@@ -146,7 +156,7 @@ def _of_deck(path: str | os.PathLike[str], ending: str, prefix: str) -> Held:
         raise ValueError(f"{prefix}: {in_one_line(error)}") from error
     if deck.left_out:
         words = listed(f"{count} {name}" for name, count in deck.left_out.items())
-        warn_of([f"{named(path)}: not read: {words}"])
+        warn_of([f"{named(path)}: not read: {words}"], LeftOut)
     blocks, groups = [*deck.blocks], {name: _by_block(deck, those) for name, those in deck.element_sets.items()}
     for name, faces in deck.surfaces.items():
         if faces:

@@ -93,6 +93,22 @@ KINDS = {
 }
 
 
+# Words of elements of any kind, and their number of corners.
+_WORDS = {
+    "tetra": ("tetrahedra", 4),
+    "hexahedron": ("hexahedra", 8),
+    "wedge": ("wedges", 6),
+    "pyramid": ("pyramids", 5),
+}
+
+
+def words_of(kind: str) -> str:
+    """Return the name of a kind for messages from its name in meshio."""
+    plain = kind.rstrip("0123456789")
+    words, corners = _WORDS.get(plain, (plain, 0))
+    return f"{words} of {kind.removeprefix(plain) or corners} nodes"
+
+
 def outer_faces(kind: ElementKind, elements: Array) -> Array:
     """Return the faces that belong to one element only: numbers of the element and its face, shape (faces, 2)."""
     corners = np.sort(elements[:, np.array(kind.faces)], axis=2).reshape(-1, len(kind.faces[0]))

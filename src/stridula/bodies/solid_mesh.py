@@ -21,7 +21,8 @@ from ..doubtful import doubts_of_size, warn_of
 from . import solid_files, solid_shapes
 from .finite_files import check_finite_in
 from .matrix_input import check_finite, numbers
-from .solid_elements import check_elements
+from .mesh_quality import scaled_jacobians
+from .solid_elements import check_elements, volumes
 from .solid_kinds import KINDS, ElementKind
 
 # Factors of meshes with more nodes exceed usual memory.
@@ -256,6 +257,20 @@ class SolidMesh:
     def size(self) -> Array:
         """Extent along x, y and z [m], shape (3,)."""
         return np.asarray(np.ptp(self.nodes, axis=0))
+
+    @property
+    def scaled_jacobian(self) -> Array:
+        """Quality of each element, shape (elements,): 1 for cubes and regular tetrahedra, 0 for flat elements.
+
+        Least determinant of the unit vectors along the edges at a corner, as in the library Verdict; meshes for finite
+        elements should have none below 0.2.
+        """
+        return scaled_jacobians(self.element_kind, self.nodes, self.elements)
+
+    @property
+    def volume(self) -> Array:
+        """Volume of each element [m³], shape (elements,)."""
+        return volumes(self.element_kind, self.nodes, self.elements)
 
     def quadratic(self) -> SolidMesh:
         """Return the mesh with nodes in the middle of its straight edges; itself if it has them.

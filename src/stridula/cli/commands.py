@@ -377,6 +377,19 @@ def animate(
 
 
 @app.command()
+def mesh(
+    file: Annotated[str, typer.Argument(metavar="FILE", help="A mesh file or a deck.")],
+    scale: Annotated[str, typer.Option(metavar="M", help="Length of its unit, in m or with a unit: 1 mm.")] = "1",
+    part: Annotated[str | None, typer.Option(metavar="NAME", help="Show only this part.")] = None,
+    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the parts in perspective.")] = None,
+) -> None:
+    """Print the parts of a mesh file: sizes, elements, groups, materials and quality."""
+    from .meshes import print_mesh
+
+    print_mesh(file, scale, part, plot)
+
+
+@app.command()
 def export(
     record: Annotated[str, typer.Argument(metavar="RUN.nc", help="A record.")],
     out: Annotated[str, typer.Option(metavar="FILE", help="Table to write: .csv or .mat.")],

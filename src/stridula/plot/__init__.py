@@ -17,6 +17,7 @@ _HOME = {
     "bodies": "space_films",
     "directivity": "directivities",
     "friction": "laws",
+    "meshes": "meshes",
     "mobility": "mobilities",
     "mode_shapes": "shapes_of_modes",
     "overview": "timelines",

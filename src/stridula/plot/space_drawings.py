@@ -5,19 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from ..arrays import Array
 from ..bodies import BodyPoint
 from ..cards import eye_of, spoken
 from ..connections import ends, unit
 from ..system import System
-from .colours import LINES
 from .moved_bodies import check_surfaces, surfaces_of
 from .plane_drawings import (
-    ALONE,
     CLOSED,
     CONTACT,
     FORCE,
@@ -34,22 +29,19 @@ from .plane_drawings import (
     run_of,
     spoken_small,
 )
-from .reels import DPI, HEIGHT, WIDTH
 from .rigid_surfaces import centres_of
-from .scenes import Stage
 from .slidings import sliding_of
+from .space_sketches import SpaceSketch
 
-ROOM = (0.02, 0.15, 0.96, 0.72)
-# Lengths as shares of the extent: arrows, springs, the scale.
-ARROW, LENGTH, SCALE = 0.18, 0.1, 0.25
-# Tint of bodies, and largest numbers of contacts with drawn normals and with written speeds.
-TINT, MOST_NORMALS, MOST_WORDS = 0.35, 8, 3
+# Lengths as shares of the extent: arrows, springs.
+ARROW, LENGTH = 0.18, 0.1
+# Largest numbers of contacts with drawn normals and with written speeds.
+MOST_NORMALS, MOST_WORDS = 8, 3
 # Angle of the arrow round a turning body [rad].
 ARC = 0.35 * np.pi
-MOST_LINES = 6
 
 
-class SpaceDrawing:
+class SpaceDrawing(SpaceSketch):
     """Drawing of a system in space before its run.
 
     Parameters
@@ -69,27 +61,14 @@ class SpaceDrawing:
 
     def __init__(self, system: System, view: tuple[float, float], title: str) -> None:
         check_surfaces(system)
-        self.system, self.figure = system, Figure(figsize=(WIDTH / DPI, HEIGHT / DPI), dpi=DPI)
-        self._shown = surfaces_of(system, eye_of(view), moving=False)
-        self._stage = Stage(self.figure, ROOM, self._shown, view)
-        self.axes: Any = self._stage.axes
-        places = np.concatenate([one.surface.place for one in self._shown])
-        self.low, self.middle = places.min(axis=0), 0.5 * (places.min(axis=0) + places.max(axis=0))
-        self.extent = float(np.ptp(places, axis=0).max()) or ALONE
+        self.system = system
+        super().__init__(surfaces_of(system, eye_of(view), moving=False), view)
         self._centres = centres_of(system)
-        self._seen, self.caption, self._handles = [places], list[str](), dict[str, Any]()
         self._draw_bodies()
         self._draw_connections()
         self._draw_contacts()
         self._draw_drives()
-        self._draw_scale()
-        self._stage.fill_with(np.concatenate(self._seen))
-        lines = self.caption[:MOST_LINES]
-        lines += [f"and {len(self.caption) - MOST_LINES} more"] if len(self.caption) > MOST_LINES else []
-        self.figure.text(0.01, 0.985, "\n".join(lines), fontsize=8, verticalalignment="top")
-        handles = list(self._handles.values())
-        self.figure.legend(handles=handles, loc="lower center", ncols=3, fontsize=8, frameon=False)
-        self.figure.suptitle(title, fontsize=11)
+        self._finish(title)
 
     def _place(self, point: BodyPoint) -> Array | None:
         """Return the place of a point, if it is known [m]."""
@@ -97,20 +76,21 @@ class SpaceDrawing:
         return self._centres[body] + body.offset(point.position) if body in self._centres else point.place
 
     def _draw_bodies(self) -> None:
-        colours = []
         bodies = {self.system.body_name(body): body for body in self.system.bodies}
-        for number, one in enumerate(self._shown):
-            tint = 1.0 - TINT * (1.0 - np.array(to_rgb(LINES[number % len(LINES)])))
-            colours.append(np.tile(tint, (int(one.seen.sum()), 1)))
+        turning = {}
+        for one in self._shown:
             turns = getattr(bodies[one.name], "turning", 0.0)
-            is_turned = isinstance(turns, float) and turns != 0.0
-            words = f"{one.name}, turns at {spoken(turns, 'rad/s')}" if is_turned else one.name
-            self._handles[f"body {number}"] = Patch(facecolor=tuple(tint.tolist()), edgecolor="0.4", label=words)
-            if is_turned:
+            if isinstance(turns, float) and turns != 0.0:
+                turning[one.name] = turns
+        self._draw_surfaces(
+            [
+                f"{one.name}, turns at {spoken(turning[one.name], 'rad/s')}" if one.name in turning else one.name
+                for one in self._shown
+            ]
+        )
+        for one in self._shown:
+            if one.name in turning:
                 self._draw_turn(bodies[one.name], one.surface.place)
-        shades = np.concatenate(colours) * self._stage.shade[:, None]
-        places = [one.surface.place for one in self._shown]
-        self._stage.drawn(self._stage.polygons(places), facecolors=shades, linewidths=0.15, edgecolors="0.55")
         drawn = {one.name for one in self._shown}
         left = [name for name in bodies if name not in drawn]
         if left:
@@ -207,49 +187,6 @@ class SpaceDrawing:
         for one in clustered(forces, NEAR * self.extent):
             tail = one.place - ARROW * self.extent * one.things[0]
             self._arrow(tail, one.place, FORCE, "force", one.label, at_tail=True)
-
-    def _draw_scale(self) -> None:
-        """Draw the directions of the world, each as long as a round length."""
-        length = 10.0 ** np.floor(np.log10(SCALE * self.extent))
-        length *= max(step for step in (1.0, 2.0, 5.0) if step * length <= SCALE * self.extent)
-        corner = self.low - 0.25 * length
-        for way, name in zip(np.eye(3), "xyz", strict=True):
-            self._arrow(corner, corner + length * way, "0.35", "", name, 1.2)
-        self._handles["scale"] = handle(f"x, y and z: {spoken_small(length)} each", "0.35")
-
-    def _arrow(
-        self, tail: Array, head: Array, colour: str, words: str, label: str, width: float = 1.8, at_tail: bool = False
-    ) -> None:
-        self._line(np.array([tail, head]), colour, width)
-        self._head(head, head - tail, colour)
-        if label:
-            where = tail + (1.08 if not at_tail else -0.08) * (head - tail)
-            box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.5}
-            self.axes.text(*where, label, color=colour, fontsize=8, ha="center", va="center", zorder=9, bbox=box)
-        if words:
-            self._legend(words, colour)
-
-    def _head(self, place: Array, way: Array, colour: str) -> None:
-        """Draw the head of an arrow as two strokes in the plane that the eye sees best."""
-        way = way / np.linalg.norm(way)
-        elevation, azimuth = np.radians(self.axes.elev), np.radians(self.axes.azim)
-        side = np.cross(way, eye_of((elevation, azimuth)))
-        size = float(np.linalg.norm(side))
-        if size > 1e-3:
-            reach = 0.025 * self.extent
-            wings = [place - reach * (way + sign * 0.45 * side / size) for sign in (1.0, -1.0)]
-            self._line(np.array([wings[0], place, wings[1]]), colour, 1.8)
-
-    def _line(self, places: Array, colour: str, width: float, **look: Any) -> None:
-        self.axes.plot(*places.T, color=colour, linewidth=width, clip_on=False, zorder=4, **look)
-        self._seen.append(places)
-
-    def _dots(self, places: Array, marker: str, colour: str, size: float, **look: Any) -> None:
-        style = {"linestyle": "none", "clip_on": False, "zorder": 5}
-        self.axes.plot(*places.T, marker=marker, color=colour, markersize=size, **style, **look)
-
-    def _legend(self, words: str, colour: str) -> None:
-        self._handles.setdefault(words, handle(words, colour, marker=">", markersize=5, linewidth=1.8))
 
 
 def spread(things: list[Cluster], most: int) -> list[Cluster]:
