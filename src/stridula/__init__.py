@@ -19,6 +19,7 @@ _HOME = {
         "Line",
         "LineProfile",
         "Material",
+        "MeshPart",
         "MeshProfile",
         "ModalBeam",
         "ModalBody",
@@ -35,6 +36,7 @@ _HOME = {
         "Section",
         "SolidBody",
         "SolidMesh",
+        "read_parts",
     ),
     "contact": (
         "Coulomb",

@@ -46,6 +46,7 @@ from .bodies import Held as Held
 from .bodies import Line as Line
 from .bodies import LineProfile as LineProfile
 from .bodies import Material as Material
+from .bodies import MeshPart as MeshPart
 from .bodies import MeshProfile as MeshProfile
 from .bodies import ModalBeam as ModalBeam
 from .bodies import ModalBody as ModalBody
@@ -62,6 +63,7 @@ from .bodies import SampledDamping as SampledDamping
 from .bodies import Section as Section
 from .bodies import SolidBody as SolidBody
 from .bodies import SolidMesh as SolidMesh
+from .bodies import read_parts as read_parts
 from .checks import ArgumentError as ArgumentError
 from .connections import Dashpot as Dashpot
 from .connections import Spring as Spring

@@ -4,6 +4,7 @@ from .axisymmetric_body import AxisymmetricBody, Held
 from .circular_path import CircularPath
 from .damping import Rayleigh, RisingDamping, SampledDamping
 from .finite_element_beam import FiniteElementBeam
+from .mesh_parts import MeshPart, read_parts
 from .modal_beam import ModalBeam
 from .modal_body import ModalBody
 from .modal_plate import Line, ModalPlate
@@ -30,6 +31,7 @@ __all__ = [
     "Line",
     "LineProfile",
     "Material",
+    "MeshPart",
     "MeshProfile",
     "ModalBeam",
     "ModalBody",
@@ -53,4 +55,5 @@ __all__ = [
     "Waves",
     "has_root",
     "is_track",
+    "read_parts",
 ]

@@ -161,6 +161,7 @@ class SolidBody(NamedPoints):
         materials: Material | Mapping[str, Material],
         *,
         scale: float = 1.0,
+        part: str | None = None,
         **options: Any,
     ) -> SolidBody:
         """Read a body from a mesh file.
@@ -168,12 +169,14 @@ class SolidBody(NamedPoints):
         Parameters
         ----------
         path : str or Path
-            File of gmsh (``.msh``), Abaqus or CalculiX (``.inp``), Nastran (``.bdf``, ``.nas``) or VTK (``.vtk``,
-            ``.vtu``), see `SolidMesh.read`.
+            File of gmsh (``.msh``), Abaqus or CalculiX (``.inp``), Nastran (``.bdf``, ``.nas``, ``.fem``, ``.dat``) or
+            VTK (``.vtk``, ``.vtu``), see `SolidMesh.read`.
         materials : Material or mapping
             As in `SolidBody`.
         scale : float, optional
             Length of the unit of the file [m], 0.001 for millimetres.
+        part : str, optional
+            The part to read of a file with several, see `SolidMesh.read`; `read_parts` reads all, with materials.
         **options
             As in `SolidBody`: `points`, `fixed`, `cutoff` and so on.
 
@@ -184,7 +187,7 @@ class SolidBody(NamedPoints):
         ValueError
             As in `SolidMesh.read` and `SolidBody`.
         """
-        return cls(SolidMesh.read(path, scale), materials, **options)
+        return cls(SolidMesh.read(path, scale, part), materials, **options)
 
     @classmethod
     def block(

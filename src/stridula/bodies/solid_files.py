@@ -6,13 +6,11 @@ import contextlib
 import io
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy  # its parts are imported on first use
-import scipy.sparse
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, in_one_line, listed
@@ -21,8 +19,10 @@ from ..doubtful import warn_of
 from ..extras import named_extras
 from .cut_elements import can_be_cut, cut_into_tetrahedra, triangles_of
 from .decks.abaqus import read_abaqus
-from .decks.deck import Deck, DeckError
+from .decks.deck import Deck, DeckError, Elastic
 from .decks.nastran import read_nastran
+from .file_content import SOLID, Cells, Held, OfBlocks
+from .file_parts import called, components, named_part, only, with_materials
 from .solid_kinds import KINDS, ElementKind, outer_faces
 
 LARGEST_FILE = 2 * 1024**3
@@ -38,53 +38,11 @@ DECKS: dict[str, Callable[[str | os.PathLike[str]], Deck]] = {
     ".fem": read_nastran,
     ".dat": read_nastran,
 }
-# Kinds of cells by the beginnings of their names.
-_SOLID = ("tetra", "hexahedron", "wedge", "pyramid", "polyhedron", "VTK_LAGRANGE_TETRA", "VTK_LAGRANGE_HEXA")
+# Beginnings of the names of other kinds of cells.
 _SURFACE = ("triangle", "quad")
 _THIN = ("vertex", "line")
 # Arrays with more distinct whole numbers do not define groups.
 MOST_GROUPS = 1000
-
-
-@dataclass(frozen=True)
-class Cells:
-    """Cells of one kind.
-
-    Attributes
-    ----------
-    type : str
-        Name of the kind in meshio.
-    data : ndarray of int, shape (cells, nodes of one)
-        Indices of their points.
-    """
-
-    type: str
-    data: Array
-
-
-@dataclass(frozen=True)
-class Held:
-    """The content of a file.
-
-    Attributes
-    ----------
-    points : ndarray, shape (points, 3)
-        Places.
-    cells : list of Cells
-        Blocks of cells.
-    groups : dict
-        Numbers of cells in each block, by the number of the block, by the name of a group.
-    point_sets : dict
-        Indices of points by the name of a set.
-    parts : dict
-        The same as `groups` for what can be read alone besides groups: placed parts and materials.
-    """
-
-    points: Array
-    cells: list[Cells]
-    groups: dict[str, dict[int, Array]]
-    point_sets: dict[str, Array] = field(default_factory=dict)
-    parts: dict[str, dict[int, Array]] = field(default_factory=dict)
 
 
 def read_mesh(path: str | os.PathLike[str], part: str | None = None) -> dict[str, Any]:
@@ -107,16 +65,52 @@ def read_mesh(path: str | os.PathLike[str], part: str | None = None) -> dict[str
     """
     held = read_held(path)
     try:
-        components = _components(held)
         if part is not None:
-            held = _only(replace(held, parts=held.parts | components), part)
-            components = _components(held)
-        if components:
-            remedy = f"choose one by part={listed(map(repr, components), ' or ')}"
-            raise ArgumentError("path", "hold one part", got=f"{len(components)} that share no node: {remedy}")
-        return _parts(held)
+            held = only(held, *named_part(held, part))
+        several = components(held)
+        if several:
+            remedy = f"choose one by part={listed(map(repr, several), ' or ')}"
+            raise ArgumentError("path", "hold one part", got=f"{len(several)} that share no node: {remedy}")
+        return _mesh(held)
     except (ArithmeticError, LookupError, TypeError, AttributeError) as error:
         raise ValueError(f"cannot read {named(path)}: {in_one_line(error)}") from error
+
+
+@dataclass(frozen=True)
+class ReadPart:
+    """A part of a file.
+
+    Attributes
+    ----------
+    mesh : dict
+        Arguments of `SolidMesh`.
+    materials : dict
+        Elastic materials by the name of their group of elements.
+    names : dict
+        Names of the materials by that of their group.
+    """
+
+    mesh: dict[str, Any]
+    materials: dict[str, Elastic]
+    names: dict[str, str]
+
+
+def read_each(path: str | os.PathLike[str]) -> dict[str, ReadPart]:
+    """Return the parts of a mesh file that share no node, by name; errors are those of `read_mesh`."""
+    held = read_held(path)
+    try:
+        several = components(held)
+        if not several:
+            solid = {at: np.arange(len(one.data)) for at, one in enumerate(held.cells) if one.type.startswith(SOLID)}
+            several = {next(called(held, solid), Path(path).stem): solid}
+        return {name: _read_part(only(held, name, part)) for name, part in several.items()}
+    except (ArithmeticError, LookupError, TypeError, AttributeError) as error:
+        raise ValueError(f"cannot read {named(path)}: {in_one_line(error)}") from error
+
+
+def _read_part(held: Held) -> ReadPart:
+    held, names = with_materials(held)
+    return ReadPart(_mesh(held), {name: held.materials[of] for name, of in names.items()}, names)
 
 
 def read_held(path: str | os.PathLike[str]) -> Held:
@@ -156,7 +150,7 @@ def _of_deck(path: str | os.PathLike[str], ending: str, prefix: str) -> Held:
     blocks, groups = [*deck.blocks], {name: _by_block(deck, those) for name, those in deck.element_sets.items()}
     for name, faces in deck.surfaces.items():
         if faces:
-            groups[_free_name(name, groups)] = {
+            groups[_surface_name(deck, name)] = {
                 len(blocks) + at: np.arange(len(one.nodes)) for at, one in enumerate(faces)
             }
             blocks += faces
@@ -168,15 +162,23 @@ def _of_deck(path: str | os.PathLike[str], ending: str, prefix: str) -> Held:
             materials.setdefault(material, []).append(those)
     of_materials = {name: _by_block(deck, np.unique(np.concatenate(those))) for name, those in materials.items()}
     cells = [Cells(one.kind, one.nodes) for one in blocks]
-    return Held(deck.points, cells, groups, dict(deck.node_sets), of_materials | parts)
+    return Held(deck.points, cells, groups, dict(deck.node_sets), parts, dict(deck.materials), of_materials)
 
 
-def _free_name(name: str, groups: dict[str, Any]) -> str:
-    """Return the name of a surface, which another group may have."""
-    return name if name not in groups else f"surface {name}"
+def _surface_name(deck: Deck, name: str) -> str:
+    """Return the name of a surface, with a word before it if an element set or a set of other nodes has the name."""
+    nodes = deck.node_sets.get(name)
+    if name not in deck.element_sets and nodes is None:
+        return name
+    if name not in deck.element_sets and nodes is not None:
+        corners = np.concatenate([block.corners.ravel() for block in deck.blocks])
+        of_surface = np.concatenate([faces.nodes.ravel() for faces in deck.surfaces[name]])
+        if np.array_equal(np.intersect1d(nodes, corners), np.unique(of_surface)):
+            return name
+    return f"surface {name}"
 
 
-def _by_block(deck: Deck, numbers: Array) -> dict[int, Array]:
+def _by_block(deck: Deck, numbers: Array) -> OfBlocks:
     """Return numbers of elements of a deck as numbers in its blocks."""
     start, found = 0, {}
     for at, block in enumerate(deck.blocks):
@@ -185,73 +187,6 @@ def _by_block(deck: Deck, numbers: Array) -> dict[int, Array]:
             found[at] = inside
         start += len(block.nodes)
     return found
-
-
-def _only(held: Held, part: str) -> Held:
-    """Return the content of a file with the solid elements of a part alone."""
-    known = held.groups | held.parts
-    solid = {
-        name: {at: those for at, those in of_block.items() if held.cells[at].type.startswith(_SOLID)}
-        for name, of_block in known.items()
-    }
-    names = [name for name, of_block in solid.items() if of_block]
-    key = next((name for name in names if name.upper() == part.upper()), None)
-    if key is None:
-        raise ArgumentError(
-            "part",
-            f"be {listed(map(repr, names), ' or ')}" if names else "be left out: no group has solid elements",
-            part,
-        )
-    cells, new = [], dict[int, Array]()
-    for at, block in enumerate(held.cells):
-        kept = np.arange(len(block.data))
-        if block.type.startswith(_SOLID):
-            kept = solid[key].get(at, kept[:0])
-        new[at] = np.full(len(block.data), -1)
-        new[at][kept] = np.arange(len(kept))
-        cells.append(Cells(block.type, block.data[kept]))
-    own = f"{key}."
-    groups = {}
-    for name, of_block in held.groups.items():
-        left = {at: new[at][those] for at, those in of_block.items()}
-        left = {at: those[those >= 0] for at, those in left.items()}
-        if any(those.size for those in left.values()):
-            groups[name.removeprefix(own)] = left
-    sets = {name.removeprefix(own): nodes for name, nodes in held.point_sets.items()}
-    return replace(held, cells=cells, groups=groups, point_sets=sets)
-
-
-def _components(held: Held) -> dict[str, dict[int, Array]]:
-    """Return the solid elements that are joined by nodes, by a group of just these or a number; none if all are."""
-    blocks = {at: one for at, one in enumerate(held.cells) if one.type.startswith(_SOLID) and len(one.data)}
-    if not blocks:
-        return {}
-    counts = [len(one.data) for one in blocks.values()]
-    rows = np.repeat(
-        np.arange(sum(counts)), np.concatenate([np.full(len(b.data), b.data.shape[1]) for b in blocks.values()])
-    )
-    columns = sum(counts) + np.concatenate([one.data.ravel() for one in blocks.values()])
-    size = sum(counts) + len(held.points)
-    joined = scipy.sparse.coo_array((np.ones(rows.size), (rows, columns)), shape=(size, size))
-    of = scipy.sparse.csgraph.connected_components(joined, directed=False)[1][: sum(counts)]
-    numbers = np.unique(of)
-    if numbers.size < 2:
-        return {}
-    of_block = dict(zip(blocks, np.split(of, np.cumsum(counts)[:-1]), strict=True))
-    found = {}
-    for k, number in enumerate(numbers.tolist()):
-        those = {at: np.flatnonzero(one == number) for at, one in of_block.items()}
-        those = {at: one for at, one in those.items() if one.size}
-        found[next(_called(held, those), f"component {k + 1}")] = those
-    return found
-
-
-def _called(held: Held, those: dict[int, Array]) -> Iterator[str]:
-    """Yield the names of parts and groups that hold just these elements."""
-    for name, of_block in {**held.parts, **held.groups}.items():
-        solid = {at: one for at, one in of_block.items() if one.size and held.cells[at].type.startswith(_SOLID)}
-        if solid.keys() == those.keys() and all(np.array_equal(np.sort(solid[at]), those[at]) for at in those):
-            yield name
 
 
 def _read(path: str | os.PathLike[str], form: str, prefix: str) -> Any:
@@ -278,10 +213,10 @@ def _read(path: str | os.PathLike[str], form: str, prefix: str) -> Any:
         raise ValueError(f"{prefix}: {in_one_line(error)}") from error
 
 
-def _parts(held: Held) -> dict[str, Any]:
+def _mesh(held: Held) -> dict[str, Any]:
     """Return nodes, elements and named groups, without nodes that have no element."""
     groups = held.groups
-    blocks = [block for block in held.cells if block.type.startswith(_SOLID) and len(block.data)]
+    blocks = [block for block in held.cells if block.type.startswith(SOLID) and len(block.data)]
     kinds = sorted({block.type for block in blocks})
     is_whole = len(kinds) == 1 and kinds[0] in KINDS
     if not kinds or not (is_whole or can_be_cut(kinds)):
@@ -325,14 +260,14 @@ def _parts(held: Held) -> dict[str, Any]:
     return found
 
 
-def _volumes(held: Held, groups: dict[str, dict[int, Array]], number: Array, owner: Array) -> dict[str, Array]:
+def _volumes(held: Held, groups: dict[str, OfBlocks], number: Array, owner: Array) -> dict[str, Array]:
     """Return the elements of each group of solid elements, with duplicates merged.
 
     They are parts of the elements of the file, whose numbers are in `owner`.
     """
     start, found = 0, dict[str, Array]()
     for at, block in enumerate(held.cells):
-        if block.type.startswith(_SOLID):
+        if block.type.startswith(SOLID):
             for name, of_block in groups.items():
                 if at in of_block and of_block[at].size:
                     those = number[np.isin(owner, start + of_block[at])]
@@ -343,7 +278,7 @@ def _volumes(held: Held, groups: dict[str, dict[int, Array]], number: Array, own
 
 def _faces_and_sets(
     held: Held,
-    groups: dict[str, dict[int, Array]],
+    groups: dict[str, OfBlocks],
     renumbered: Array,
     surface: dict[tuple[int, ...], tuple[int, int]],
     sides: int,
@@ -396,11 +331,11 @@ def _faces_in(
     return pairs[np.isin(of_face, nodes).all(axis=1)]
 
 
-def _grouped(held: Any, form: str) -> dict[str, dict[int, Array]]:
+def _grouped(held: Any, form: str) -> dict[str, OfBlocks]:
     """Return the named groups of cells: numbers in each block by the number of the block, by name."""
     if form == "gmsh":
         return _of_gmsh(held)
-    found: dict[str, dict[int, Array]] = {}
+    found: dict[str, OfBlocks] = {}
     for array, of_block in held.cell_data.items():
         for at, values in enumerate(of_block):
             for value, those in _by_value(values):
@@ -423,10 +358,10 @@ def _by_value(values: Any) -> Iterator[tuple[int, Array]]:
             yield int(value), np.flatnonzero(array == value)
 
 
-def _of_gmsh(held: Any) -> dict[str, dict[int, Array]]:
+def _of_gmsh(held: Any) -> dict[str, OfBlocks]:
     """Return the physical groups; groups without a name get their number."""
     names = {(int(dimension), int(tag)): name for name, (tag, dimension) in held.field_data.items()}
-    found: dict[str, dict[int, Array]] = {}
+    found: dict[str, OfBlocks] = {}
     for at, tags in enumerate(held.cell_data.get("gmsh:physical", [])):
         for tag, those in _by_value(tags):
             if tag:

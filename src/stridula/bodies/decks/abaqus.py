@@ -38,7 +38,6 @@ FACES = {
     6: ((0, 1, 2), (3, 5, 4), (0, 3, 4, 1), (1, 4, 5, 2), (2, 5, 3, 0)),
     8: ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
 }
-CORNERS = {"tetra": 4, "pyramid": 5, "wedge": 6, "hexahedron": 8}
 # Keywords that make nodes or elements from others.
 MADE = ("NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "EL GEN", "EL COPY")
 
@@ -459,7 +458,7 @@ def _faces(deck: Deck, rows: list[tuple[Array, str]]) -> list[Block]:
         for number in elements.tolist():
             at = int(np.searchsorted(starts, number, side="right")) - 1
             block = deck.blocks[at]
-            sides = FACES[CORNERS[block.kind.rstrip("0123456789")]]
+            sides = FACES[block.corners.shape[1]]
             if int(face[1]) > len(sides):
                 deck.left_out[f"faces {face} of a *SURFACE"] += 1
                 continue

@@ -9,6 +9,8 @@ import numpy as np
 
 from ...arrays import Array
 
+CORNERS = {"tetra": 4, "pyramid": 5, "wedge": 6, "hexahedron": 8, "triangle": 3, "quad": 4}
+
 
 @dataclass(frozen=True)
 class Block:
@@ -26,6 +28,11 @@ class Block:
 
     kind: str
     nodes: Array
+
+    @property
+    def corners(self) -> Array:
+        """Indices of the corners, shape (elements, corners)."""
+        return self.nodes[:, : CORNERS[self.kind.rstrip("0123456789")]]
 
 
 @dataclass(frozen=True)
