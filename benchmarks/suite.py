@@ -16,6 +16,7 @@ from pathlib import Path
 import against_c
 import brake
 import gpu
+import linear_theory
 import machine
 import many_contacts
 import many_runs
@@ -43,6 +44,7 @@ SECTIONS = (
     short_runs,
     space,
     meshes,
+    linear_theory,
     maps,
     surveys,
     scaling,

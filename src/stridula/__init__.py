@@ -19,6 +19,7 @@ _HOME = {
         "Line",
         "LineProfile",
         "Material",
+        "MatrixFace",
         "MeshPart",
         "MeshProfile",
         "ModalBeam",

@@ -46,6 +46,7 @@ from .bodies import Held as Held
 from .bodies import Line as Line
 from .bodies import LineProfile as LineProfile
 from .bodies import Material as Material
+from .bodies import MatrixFace as MatrixFace
 from .bodies import MeshPart as MeshPart
 from .bodies import MeshProfile as MeshProfile
 from .bodies import ModalBeam as ModalBeam

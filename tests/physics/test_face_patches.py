@@ -172,6 +172,10 @@ def test_names_and_places_of_patches():
     assert face.areas.sum() == pytest.approx(LONG * WIDE)
 
 
+def test_points_of_a_face_are_short_in_print():
+    assert repr(body(plate(0), 24).face_points("sole")) == "FacePoints(24 points, 0.0024 m2)"
+
+
 def test_the_usual_division_is_the_points_of_integration_if_they_are_few():
     few, many = plate(0, divisions=(4, 4, 1)), plate(0, divisions=(5, 4, 1))
     assert len(st.SolidBody(few, LINING, cutoff=2e4, contact_faces=["sole"]).face_points("sole").area) == 64

@@ -4,6 +4,7 @@ from .axisymmetric_body import AxisymmetricBody, Held
 from .circular_path import CircularPath
 from .damping import Rayleigh, RisingDamping, SampledDamping
 from .finite_element_beam import FiniteElementBeam
+from .matrix_faces import MatrixFace
 from .mesh_parts import MeshPart, read_parts
 from .modal_beam import ModalBeam
 from .modal_body import ModalBody
@@ -31,6 +32,7 @@ __all__ = [
     "Line",
     "LineProfile",
     "Material",
+    "MatrixFace",
     "MeshPart",
     "MeshProfile",
     "ModalBeam",

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from numbers import Integral
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -12,7 +14,7 @@ import scipy.sparse
 import scipy.spatial
 
 from ..arrays import Array
-from ..checks import ArgumentError
+from ..checks import ArgumentError, choice, count
 from ..long_tasks import check_wanted
 from .solid_places import FacePoints, Sampled, sampled
 
@@ -75,6 +77,33 @@ class Patches:
 def usual_division(mesh: SolidMesh, name: str) -> int | None:
     """Return the approximate number of patches of a face, None for its points of integration, if they are few."""
     return None if len(mesh.faces[name]) * len(mesh.element_kind.faces[0]) <= FEW_POINTS else USUAL
+
+
+def divided(given: Any, mesh: SolidMesh, word: str) -> dict[str, Division | None]:
+    """Return the divisions of faces into contact points by their names, None where none is given."""
+    if isinstance(given, str):
+        given = (given,)
+    if not isinstance(given, (Sequence, Mapping)):
+        raise ArgumentError(word, "be names of faces, or divisions by name", given)
+    for number, name in enumerate(given):
+        at = word if isinstance(given, Mapping) else f"{word}[{number}]"
+        choice(at, name, tuple(mesh.faces) or ("none",))
+    if not isinstance(given, Mapping):
+        return dict.fromkeys(given)
+    return {name: checked_division(f"{word}[{name!r}]", division) for name, division in given.items()}
+
+
+def checked_division(word: str, given: Any) -> Division | None:
+    """Return a division of a face after checks."""
+    if given is None or given == "integration":
+        return given
+    if isinstance(given, Sequence) and not isinstance(given, str) and len(given) == 2:
+        first, second = (count(f"{word}[{k}]", one, low=1, high=MOST_PATCHES) for k, one in enumerate(given))
+        count(word, first * second, low=1, high=MOST_PATCHES)
+        return first, second
+    if isinstance(given, Integral):
+        return count(word, given, low=1, high=MOST_PATCHES)
+    raise ArgumentError(word, "be a number of patches, two numbers of cells or 'integration'", given)
 
 
 @lru_cache(maxsize=32)

@@ -19,8 +19,8 @@ from ..checks import ArgumentError
 
 # Nodes below which a part of a mesh is not cut further.
 SMALLEST_PART = 60
-# Share of entries that are not zero above which factors are dense.
-FULL = 0.1
+# Degrees of freedom, and share of entries that are not zero, above which factors are dense.
+MANY, FULL = 600, 0.1
 
 Solve = Callable[[Array], Array]
 
@@ -28,8 +28,8 @@ Solve = Callable[[Array], Array]
 def factorised(matrix: Any, order: Array | None = None) -> Solve:
     """Return a function that solves linear systems with a sparse symmetric positive definite matrix.
 
-    CHOLMOD (scikit-sparse) or Pardiso (pypardiso) factorise it if they are installed, else SuperLU; LAPACK if a
-    tenth of it is not zero.
+    CHOLMOD (scikit-sparse) or Pardiso (pypardiso) factorise it if they are installed, else SuperLU; LAPACK if it
+    is large and a tenth of it is not zero.
 
     Parameters
     ----------
@@ -43,7 +43,8 @@ def factorised(matrix: Any, order: Array | None = None) -> Solve:
     ValueError
         If the factors do not fit into memory.
     """
-    if matrix.nnz > FULL * matrix.shape[0] ** 2:
+    size = matrix.shape[0]
+    if size > MANY and matrix.nnz > FULL * size**2:
         return _dense(matrix)
     for package, make in LIBRARIES.items():
         if find_spec(package) is not None:

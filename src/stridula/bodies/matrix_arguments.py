@@ -8,11 +8,14 @@ from typing import Any
 
 import numpy as np
 import scipy.linalg
+import scipy.spatial
 
 from ..arrays import Array
 from ..checks import ArgumentError
 from .damping import Rayleigh
+from .face_patches import divided
 from .factorisation import factorised
+from .matrix_faces import MatrixFace
 from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, AlignedMatrices, Nodes, check_size
 from .matrix_input import (
     check_mass,
@@ -25,6 +28,10 @@ from .matrix_input import (
     square,
     symmetric,
 )
+from .solid_mesh import SolidMesh
+
+# Largest distance between the same node in both readings of a deck, relative to the size of the mesh.
+SAME = 1e-9
 
 
 def from_container(held: dict[str, Any]) -> dict[str, Any]:
@@ -57,6 +64,25 @@ def from_matrices(
         pulled = files.matrices["mass"][free][:, ~free] @ motion[:, ~free].T
         arguments["translation"] = motion[:, free] + _held_back(arguments["mass"], pulled).T
     return arguments
+
+
+def faces_of(mesh: SolidMesh, faces: Any, files: AlignedMatrices, nodes: Nodes) -> dict[str, MatrixFace]:
+    """Return faces of the mesh of a deck, whose nodes are those of the rows of files of matrices."""
+    if files.labels is None:
+        raise ArgumentError("faces", "be left out where files do not name the nodes of their rows", faces)
+    divisions = divided(faces, mesh, "faces")
+    far, nearest = scipy.spatial.KDTree(nodes.places).query(mesh.nodes)
+    if far.max() > SAME * float(np.linalg.norm(mesh.size)):
+        got = f"a node {far.max():.3g} m from any other"
+        raise ArgumentError("mesh", "have its nodes in global coordinates, without instances", got=got)
+    row = {(int(node), int(way)): k for k, (node, way) in enumerate(files.labels.tolist())}
+    kept = np.where(files.free, np.cumsum(files.free) - 1, -1)
+    degrees = np.full((len(mesh.nodes), 3), -1, dtype=np.int64)
+    for at, number in enumerate(nodes.numbers[nearest].tolist()):
+        for direction in range(3):
+            found = row.get((number, direction + 1))
+            degrees[at, direction] = -1 if found is None else kept[found]
+    return {name: MatrixFace(mesh, name, degrees, division) for name, division in divisions.items()}
 
 
 def _held_back(mass: Any, pulled: Array) -> Array:

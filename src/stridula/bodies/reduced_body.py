@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -14,12 +14,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, instance, listed, positive
+from ..checks import ArgumentError, choice, instance, listed, positive
 from ..ordinary import of_ordinary_size
 from .cards import FEW
 from .damping import DampingLaw, Rayleigh, checked_damping
+from .face_patches import Division, Patches
 from .long_searches import search_told
-from .matrix_arguments import from_container, from_matrices
+from .matrix_arguments import faces_of, from_container, from_matrices
+from .matrix_faces import MatrixFace
 from .matrix_files import LARGEST_SIZE, POINT, files_of, read_container, read_matrices, read_nodes, write_npz
 from .matrix_input import (
     check_finite,
@@ -35,9 +37,11 @@ from .matrix_input import (
     stays_sparse,
     symmetric,
 )
-from .modes import Modes
+from .modes import BodyPoint, Modes
 from .named_points import NamedPoints
 from .reduction import Reduction, reduce_body
+from .solid_mesh import SolidMesh
+from .solid_places import FacePoints
 from .sparse_reduction import DENSE, reduce_large_body, reduce_sparse_body
 
 FILES = ("path", "mass", "stiffness")
@@ -77,6 +81,9 @@ class ReducedBody(NamedPoints):
         body has its full static flexibility there.
     name : str, optional
         Name in records; distinguishes equal bodies.
+    faces : mapping of MatrixFace, optional
+        Faces that touch other bodies by name, for bodies in space. Their contact points are points, too: those of
+        "rub" are "rub[1]", "rub[2]" and so on.
 
     Raises
     ------
@@ -94,6 +101,7 @@ class ReducedBody(NamedPoints):
     cutoff: float | None = None
     residual_flexibility: bool = True
     name: str = ""
+    faces: Mapping[str, MatrixFace] = field(default_factory=dict)
 
     @of_ordinary_size("mass, stiffness, damping and points")
     def __post_init__(self) -> None:
@@ -106,7 +114,8 @@ class ReducedBody(NamedPoints):
         self._set("mass", made_symmetric("mass", of_shape("mass", self.mass)))
         size = self.mass.shape[0]
         self._set("stiffness", made_symmetric("stiffness", of_shape("stiffness", self.stiffness, size)))
-        self._set("points", MappingProxyType(points_of(self.points, size)))
+        self._set("faces", MappingProxyType(_faces(self.faces)))
+        self._set("points", MappingProxyType(points_of(self._with_faces(size), size)))
         self._set("damping", checked_damping(self.damping) if is_large else damping_of(self.damping, size))
         if self.translation is not None:
             self._set("translation", rows_of("translation", self.translation, size, self._directions))
@@ -131,6 +140,7 @@ class ReducedBody(NamedPoints):
         residual_flexibility: bool | None = None,
         labels: str | os.PathLike[str] | None = None,
         mesh: str | os.PathLike[str] | None = None,
+        faces: Sequence[str] | Mapping[str, Division | None] = (),
         name: str = "",
     ) -> ReducedBody:
         """Read a body from one file with all its data, or from one file for each matrix.
@@ -193,6 +203,9 @@ class ReducedBody(NamedPoints):
         mesh : str or Path, optional
             Deck with the coordinates of nodes: ``*NODE`` of Abaqus or CalculiX in ``.inp``, else ``GRID`` of Nastran.
             A place must be within a thousandth of the mesh size of a node.
+        faces : sequence of str or mapping, optional
+            Surfaces or node sets of `mesh` that touch other bodies: their names, or divisions into contact points by
+            name, as in `SolidBody`. Needs labels and the solid elements of the mesh.
         name : str, optional
             As in `ReducedBody`.
 
@@ -234,6 +247,8 @@ class ReducedBody(NamedPoints):
         beside = {word: file for word, file in (("labels", labels), ("mesh", mesh)) if file is not None}
         for word, file in beside.items():
             instance(word, file, (str, os.PathLike))
+        if faces and mesh is None:
+            raise ArgumentError("mesh", "be given with faces", mesh)
         held = None if path is None else read_container(path)
         if held is not None:
             for word, file in beside.items():
@@ -247,7 +262,11 @@ class ReducedBody(NamedPoints):
         if isinstance(damping, (str, os.PathLike)):
             given_files["damping"] = given.pop("damping")
         nodes = None if mesh is None else read_nodes(mesh)
-        return cls(**given | from_matrices(read_matrices(given_files, labels), added, given.get("translation"), nodes))
+        files = read_matrices(given_files, labels)
+        arguments = from_matrices(files, added, given.get("translation"), nodes)
+        if mesh is not None and nodes is not None and faces:
+            arguments["faces"] = faces_of(SolidMesh.read(mesh), faces, files, nodes)
+        return cls(**given | arguments)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the body to an ``.npz`` file; `read` returns an equal body.
@@ -257,11 +276,13 @@ class ReducedBody(NamedPoints):
         OSError
             If the file cannot be written; no partial file is left.
         ValueError
-            If the name does not end in ``.npz``.
+            If the name does not end in ``.npz``, or if the body has faces.
         """
         instance("path", path, (str, os.PathLike))
         if Path(path).suffix.lower() != ".npz":
             raise ArgumentError("path", "end in .npz", os.fspath(path))
+        if self.faces:
+            raise ArgumentError("faces", "be left out to be saved", got=", ".join(self.faces))
         if stays_sparse(self.mass):
             raise ArgumentError(
                 "mass", f"have at most {LARGEST_SIZE} degrees of freedom to be saved", got=self.mass.shape[0]
@@ -304,6 +325,31 @@ class ReducedBody(NamedPoints):
     def point_names(self) -> tuple[str, ...]:
         """Names of its points."""
         return tuple(self.points)
+
+    @property
+    def face_names(self) -> tuple[str, ...]:
+        """Names of its faces."""
+        return tuple(self.faces)
+
+    def face_points(self, name: str) -> FacePoints:
+        """Return the contact points on a face: places, areas and normals."""
+        return self._face(name).points
+
+    def patches(self, name: str) -> Patches | None:
+        """Return the patches of a face; None if its contact points are those of integration."""
+        return self._face(name).patches
+
+    def contact_point(self, name: str, number: int) -> BodyPoint:
+        """Return a contact point of a face by its number from 0."""
+        return self.at(f"{name}[{number + 1}]")
+
+    def place(self, position: str) -> Array | None:
+        """Return the world place of a contact point of a face [m], shape (3,); None for other points."""
+        self.check_position(position)
+        name, _, number = position.removesuffix("]").rpartition("[")
+        if name not in self.faces or not number.isdecimal():
+            return None
+        return np.array(self.faces[name].points.place[int(number) - 1])
 
     @property
     def has_modes_at_hand(self) -> bool:
@@ -364,6 +410,17 @@ class ReducedBody(NamedPoints):
         values = (dict(value) if isinstance(value, Mapping) else value for value in self._values)
         return ReducedBody, tuple(values)
 
+    def _face(self, name: str) -> MatrixFace:
+        return self.faces[choice("name", name, self.face_names or ("none",))]
+
+    def _with_faces(self, size: int) -> dict[str, Any]:
+        """Return the points with those of the faces."""
+        instance("points", self.points, Mapping)
+        found = dict(self.points)
+        for name, face in self.faces.items():
+            found |= {f"{name}[{k + 1}]": rows for k, rows in enumerate(face.rows(size))}
+        return found
+
     @property
     def _values(self) -> tuple[Any, ...]:
         return tuple(getattr(self, field.name) for field in fields(self))
@@ -377,6 +434,9 @@ class ReducedBody(NamedPoints):
                 if stays_sparse(part):
                     content.update(b"".join(array.tobytes() for array in (part.indptr, part.indices, part.data)))
                     part = part.shape
+                if isinstance(part, MatrixFace):
+                    content.update(part.digest)
+                    continue
                 is_array = isinstance(part, np.ndarray)
                 content.update(repr((name, part.shape if is_array else part, len(parts))).encode())
                 content.update(part.tobytes() if is_array else b"")
@@ -404,3 +464,13 @@ class ReducedBody(NamedPoints):
         if isinstance(value, np.ndarray):
             value.flags.writeable = False
         object.__setattr__(self, name, value)
+
+
+def _faces(given: Any) -> dict[str, MatrixFace]:
+    """Return faces by their names after checks."""
+    instance("faces", given, Mapping)
+    for name, one in given.items():
+        if not isinstance(name, str) or not name:
+            raise ArgumentError("faces", "have names that are text", name)
+        instance(f"faces[{name!r}]", one, MatrixFace)
+    return dict(given)

@@ -25,7 +25,7 @@ from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .cards import FEW
 from .damping import DampingLaw, checked_damping
 from .drawn_surfaces import DrawnSurface, surface_of_mesh
-from .face_patches import MOST_PATCHES, Division, Patches, patched, usual_division
+from .face_patches import Division, Patches, divided, patched, usual_division
 from .factorisation import dissection
 from .long_searches import search_told
 from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
@@ -144,7 +144,7 @@ class SolidBody(NamedPoints):
             self._set("mesh", self.mesh.quadratic())
         self._set("points", MappingProxyType(_points(self.points, self.mesh)))
         self._set("fixed", MappingProxyType(_fixed(self.fixed, self.mesh)))
-        self._set("contact_faces", MappingProxyType(divided(self.contact_faces, self.mesh)))
+        self._set("contact_faces", MappingProxyType(divided(self.contact_faces, self.mesh, "contact_faces")))
         size = int(self._free.sum())
         if not size:
             raise ArgumentError("fixed", "leave something free", got="all nodes held")
@@ -624,33 +624,6 @@ def _node(name: Any, where: Any, mesh: SolidMesh, own: Mapping[str, int]) -> int
         return mesh.node_at(where)
     except ArgumentError as error:
         raise error.renamed(word) from None
-
-
-def divided(given: Any, mesh: SolidMesh) -> dict[str, Division | None]:
-    """Return the divisions of faces into contact points by their names, None where none is given."""
-    if isinstance(given, str):
-        given = (given,)
-    if not isinstance(given, (Sequence, Mapping)):
-        raise ArgumentError("contact_faces", "be names of faces, or divisions by name", given)
-    for number, name in enumerate(given):
-        word = "contact_faces" if isinstance(given, Mapping) else f"contact_faces[{number}]"
-        choice(word, name, tuple(mesh.faces) or ("none",))
-    if not isinstance(given, Mapping):
-        return dict.fromkeys(given)
-    return {name: _division(f"contact_faces[{name!r}]", division) for name, division in given.items()}
-
-
-def _division(word: str, given: Any) -> Division | None:
-    """Return a division of a face after checks."""
-    if given is None or given == "integration":
-        return given
-    if isinstance(given, Sequence) and not isinstance(given, str) and len(given) == 2:
-        first, second = (count(f"{word}[{k}]", one, low=1, high=MOST_PATCHES) for k, one in enumerate(given))
-        count(word, first * second, low=1, high=MOST_PATCHES)
-        return first, second
-    if isinstance(given, Integral):
-        return count(word, given, low=1, high=MOST_PATCHES)
-    raise ArgumentError(word, "be a number of patches, two numbers of cells or 'integration'", given)
 
 
 def _fixed(given: Any, mesh: SolidMesh) -> dict[str, str]:

@@ -11,7 +11,7 @@ import scipy  # its parts are imported on first use
 import scipy.sparse
 
 from ..arrays import Array
-from ..checks import ArgumentError
+from ..checks import ArgumentError, counted
 from ..long_tasks import check_wanted
 from .solid_elements import shape_functions
 from .solid_kinds import ElementKind
@@ -28,9 +28,9 @@ _SQUARE = np.array([(x, y) for x in _LINE for y in _LINE]), np.full(4, 0.25)
 _TRIANGLE = np.array([(1.0, 1.0), (4.0, 1.0), (1.0, 4.0)]) / 6.0, np.full(3, 1.0 / 6.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FacePoints:
-    """Points of integration on a part of the surface of a mesh.
+    """Contact points on a part of the surface of a mesh: points of integration, or centres of patches.
 
     Attributes
     ----------
@@ -45,6 +45,9 @@ class FacePoints:
     place: Array
     area: Array
     normal: Array
+
+    def __repr__(self) -> str:
+        return f"FacePoints({counted(len(self.area), 'point')}, {float(self.area.sum()):.4g} m2)"
 
 
 @lru_cache(maxsize=32)
@@ -70,7 +73,7 @@ def face_values(mesh: SolidMesh, name: str) -> Any:
     return scipy.sparse.csr_array((values.ravel(), (rows, nodes.ravel())), shape=(len(points.area), len(mesh.nodes)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Sampled(FacePoints):
     """Points of integration on the face of one element.
 

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from ..arrays import Array
-from ..bodies import AxisymmetricBody, SolidBody
+from ..bodies import AxisymmetricBody, ReducedBody, SolidBody
 from ..bodies.solid_overlays import overlaid
 from ..bodies.solid_places import FacePoints
 from ..checks import ArgumentError, choice, counted, finite, instance
@@ -44,8 +44,9 @@ class SurfaceContact:
 
     Parameters
     ----------
-    body : SolidBody
-        Body whose face touches; its `contact_faces` should name the face, to keep its static flexibility there.
+    body : SolidBody or ReducedBody
+        Body whose face touches; `contact_faces` of a `SolidBody` should name the face, to keep its static flexibility
+        there.
     face : str
         Name of the face.
     track : AxisymmetricBody, SolidBody or RigidTrack
@@ -80,7 +81,7 @@ class SurfaceContact:
         other.
     """
 
-    body: SolidBody
+    body: SolidBody | ReducedBody
     face: str
     track: Any
     track_face: str = ""
@@ -93,7 +94,9 @@ class SurfaceContact:
     turning: tuple[Sequence[float], Sequence[float], float] | None = None
 
     def __post_init__(self) -> None:
-        instance("body", self.body, SolidBody)
+        instance("body", self.body, (SolidBody, ReducedBody))
+        if self.overlay and not isinstance(self.body, SolidBody):
+            raise ArgumentError("overlay", "be False for a ReducedBody", self.overlay)
         choice("face", self.face, self.body.face_names or ("none",))
         instance("track", self.track, (AxisymmetricBody, SolidBody, RigidTrack))
         instance("overlay", self.overlay, bool)
@@ -125,7 +128,7 @@ class SurfaceContact:
     @cached_property
     def points(self) -> FacePoints:
         """The points of the face: places, areas and outward normals."""
-        if self.overlay:
+        if self.overlay and isinstance(self.body, SolidBody):
             return overlaid(
                 self.body.face(self.face), self.body.mesh, self.track.face(self.track_face), self.track.mesh
             )

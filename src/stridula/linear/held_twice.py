@@ -27,6 +27,6 @@ def held_twice(system: System, contacts: Sequence[int]) -> ArgumentError:
 def _way_out(contact: PointContact) -> str:
     """Return what to change at a point of a surface: its stiffness, or the flexibility that its body keeps there."""
     body = contact.tip.body
-    if getattr(body, "cutoff", None) is None or getattr(body, "contact_faces", None):
+    if getattr(body, "cutoff", None) is None or getattr(body, "contact_faces", True):
         return "give the SurfaceContact a stiffness"
     return "give the SurfaceContact a stiffness, or name its face in contact_faces of the body"

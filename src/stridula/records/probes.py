@@ -53,7 +53,7 @@ class _Motion:
     def keys(self) -> dict[str, Any]:
         """Keys of it in a scenario, besides quantity and body."""
         place = self.point.position if self.point.point_name is None else self.point.point_name
-        if hasattr(self.point.body, "mesh"):
+        if hasattr(self.point.body, "mesh") or getattr(self.point.body, "faces", {}):
             # Such bodies are kept as modes.
             place = self.point.label
         return {"point": place, "direction": self.direction}

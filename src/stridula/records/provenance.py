@@ -26,6 +26,8 @@ from .probes import Probe
 
 # Most bytes of the surface of a body that a record keeps for films.
 LARGEST_DRAWN = 20_000_000
+# Fields of bodies that tables do not take as they are.
+WRITTEN_APART = ("material", "section", "points", "faces", "turning", "velocities", "circles", "drawn", "places")
 # Placeholder of a packed array while the rest is written; it has a character that no text of a scenario has.
 _ASIDE = "\ue000packed array "
 _PUT_ASIDE = re.compile(f'"{_ASIDE}(\\d+)"')
@@ -184,7 +186,7 @@ def _value(value: Any) -> Any:
 
 
 def _body(body: Any) -> dict[str, Any]:
-    given = _plain(body, "material", "section", "points", "turning", "velocities", "circles", "drawn", "places")
+    given = _plain(body, *WRITTEN_APART)
     if hasattr(body, "material"):
         given["material"] = _plain(body.material)
     if hasattr(body, "points"):
@@ -231,8 +233,8 @@ def _general_body(body: Any, system: System, probed: Sequence[BodyPoint]) -> dic
 
 
 def _is_meshed(body: Any) -> bool:
-    """Return whether a body has a mesh; it is written as its modes."""
-    return hasattr(body, "mesh")
+    """Return whether a body has a mesh, or faces of one; it is written as its modes."""
+    return hasattr(body, "mesh") or (bool(getattr(body, "faces", {})) and body.modes().damping_matrix is None)
 
 
 def _modes_table(body: Any, points: Sequence[BodyPoint], circles: Sequence[PointContact] = ()) -> dict[str, Any]:
@@ -245,7 +247,7 @@ def _modes_table(body: Any, points: Sequence[BodyPoint], circles: Sequence[Point
         "kind": ModalBody.kind,
         "angular_frequency": _value(modes.angular_frequency[held]),
         "damping_rate": _value(modes.damping_rate[held]),
-        "outer_surface": _value(body.surface()),
+        **({"outer_surface": _value(body.surface())} if getattr(body, "has_surface", False) else {}),
         "points": {name: _value(one) for name, one in rows.items()},
         "translation": _value(modes.translation + 0.0),
         "residual": int(modes.massless.sum()),
@@ -255,13 +257,21 @@ def _modes_table(body: Any, points: Sequence[BodyPoint], circles: Sequence[Point
         ),
         **_circles(circles),
         **_drawn(body),
-        "places": {point.label: _value(body.place(point.position)) for point in points if point.body == body},
+        "places": _places([point for point in points if point.body == body]),
         "name": body.name,
     }
 
 
+def _places(points: Sequence[BodyPoint]) -> dict[str, Any]:
+    """Return the places of points where they are known."""
+    known = {point.label: point.place for point in points}
+    return {name: _value(place) for name, place in known.items() if place is not None}
+
+
 def _drawn(body: Any) -> dict[str, Any]:
-    """Return the surface of a body for drawing, nothing if it is too large."""
+    """Return the surface of a body for drawing, nothing without one or if it is too large."""
+    if not hasattr(body, "drawn"):
+        return {}
     arrays = drawn_table(body.drawn)
     if sum(array.nbytes for array in arrays.values()) > LARGEST_DRAWN:
         return {}
