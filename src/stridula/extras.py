@@ -12,7 +12,7 @@ from typing import Any
 NEEDED = {
     "pydantic": ("scenarios need", "scenarios"),
     "h5netcdf": ("records in files need", "files"),
-    "h5py": ("records in files need", "files"),
+    "h5py": ("records and meshes in files need", "files"),
     "meshio": ("meshes in files need", "files"),
     "soundfile": ("sound files need", "sound"),
     "matplotlib": ("figures need", "plot"),

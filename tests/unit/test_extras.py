@@ -27,7 +27,7 @@ IN_PYTHON = {
     "st.load_scenario('squeal')": "scenarios need pydantic",
     "st.sweep": "scenarios need pydantic",
     "st.load('a.nc')": "records in files need h5netcdf",
-    "st.save(xr.Dataset(), 'b.nc')": "records in files need h5py",
+    "st.save(xr.Dataset(), 'b.nc')": "records and meshes in files need h5py",
     "st.SolidMesh.read('a.msh')": "meshes in files need meshio",
     "st.MeshProfile.read('a.msh')": "meshes in files need meshio",
     "st.read_wav('a.wav')": "sound files need soundfile",

@@ -21,7 +21,10 @@ from ..extras import named_extras
 from .cut_elements import can_be_cut, cut_into_tetrahedra, triangles_of
 from .decks.abaqus import read_abaqus
 from .decks.deck import Deck, DeckError, Elastic
+from .decks.med import read_med
+from .decks.medit import read_medit
 from .decks.nastran import read_nastran
+from .decks.universal import read_universal
 from .file_content import SOLID, Cells, Held, OfBlocks
 from .file_parts import called, components, named_part, only, with_materials
 from .solid_kinds import KINDS, ElementKind, outer_faces
@@ -38,6 +41,10 @@ DECKS: dict[str, Callable[[str | os.PathLike[str]], Deck]] = {
     ".nas": read_nastran,
     ".fem": read_nastran,
     ".dat": read_nastran,
+    ".unv": read_universal,
+    ".uff": read_universal,
+    ".med": read_med,
+    ".mesh": read_medit,
 }
 # Beginnings of the names of other kinds of cells.
 _SURFACE = ("triangle", "quad")

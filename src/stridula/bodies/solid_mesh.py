@@ -116,7 +116,7 @@ class SolidMesh:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str], scale: float = 1.0, part: str | None = None) -> SolidMesh:
-        """Read a mesh of gmsh (``.msh``), Abaqus or CalculiX (``.inp``), Nastran (``.bdf``, ``.dat``) or VTK.
+        """Read a mesh of gmsh, Abaqus, CalculiX, Nastran, VTK, Salome (MED), Medit or of a universal file.
 
         Groups of elements become volumes. Groups of faces, or of nodes that hold all nodes of a face on the surface,
         become faces. Groups of nodes remain sets of nodes. Names are those of the file: physical groups of gmsh,

@@ -96,7 +96,7 @@ class DeckError(ValueError):
     Parameters
     ----------
     line : int
-        The line, from 1.
+        The line, from 1; 0 in files without lines.
     words : str
         The fault and a remedy.
     file : str, optional
@@ -104,4 +104,5 @@ class DeckError(ValueError):
     """
 
     def __init__(self, line: int, words: str, file: str = "") -> None:
-        super().__init__(f"{file}, line {line}: {words}" if file else f"line {line}: {words}")
+        place = f"line {line}: " if line else ""
+        super().__init__(f"{file}, {place}{words}" if file else f"{place}{words}")

@@ -12,6 +12,7 @@ import numpy as np
 
 from ...arrays import Array
 from .deck import Block, Deck, Elastic
+from .mirrored import right_handed
 from .nastran_cards import Card, Where, cards, refused
 from .nastran_systems import BASIC, BY_GRIDS, BY_POINTS, Definition, definitions, systems_of
 
@@ -26,40 +27,21 @@ class _Solid:
         Kinds without and with nodes in the middle of edges.
     corners : int
         Number of corners.
-    base : int
-        Number of corners of the first face.
     order : tuple of int
         Places in the card of all nodes in the order of VTK.
-    mirror : tuple of int
-        Order of all nodes of the mirrored element.
     """
 
     kinds: tuple[str, str]
     corners: int
-    base: int
     order: tuple[int, ...]
-    mirror: tuple[int, ...]
 
 
-_TETRA = _Solid(("tetra", "tetra10"), 4, 3, tuple(range(10)), (0, 2, 1, 3, 6, 5, 4, 7, 9, 8))
-_PYRAMID = _Solid(("pyramid", "pyramid13"), 5, 4, tuple(range(13)), (0, 3, 2, 1, 4, 8, 7, 6, 5, 9, 12, 11, 10))
+_TETRA = _Solid(("tetra", "tetra10"), 4, tuple(range(10)))
+_PYRAMID = _Solid(("pyramid", "pyramid13"), 5, tuple(range(13)))
 # Cards of hexahedra and wedges name the middles of upright edges before those of the upper face.
-_HEXAHEDRON = _Solid(
-    ("hexahedron", "hexahedron20"),
-    8,
-    4,
-    (*range(12), *range(16, 20), *range(12, 16)),
-    (0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17),
-)
-_WEDGE = _Solid(
-    ("wedge", "wedge15"),
-    6,
-    3,
-    (*range(9), *range(12, 15), *range(9, 12)),
-    (0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13),
-)
+_HEXAHEDRON = _Solid(("hexahedron", "hexahedron20"), 8, (*range(12), *range(16, 20), *range(12, 16)))
+_WEDGE = _Solid(("wedge", "wedge15"), 6, (*range(9), *range(12, 15), *range(9, 12)))
 SOLIDS = {"CTETRA": _TETRA, "CHEXA": _HEXAHEDRON, "CPENTA": _WEDGE, "CPYRAM": _PYRAMID, "CPYRA": _PYRAMID}
-OF_KINDS = {kind: solid for solid in SOLIDS.values() for kind in solid.kinds}
 SHELLS = {
     **dict.fromkeys(("CTRIA3", "CTRIA6", "CTRIAR"), ("triangle", 3)),
     **dict.fromkeys(("CQUAD4", "CQUAD8", "CQUADR"), ("quad", 4)),
@@ -218,7 +200,7 @@ class _Model:
         """Return the deck of all cards."""
         points = self.grids.places(self.systems)
         blocks = [
-            Block(kind, _right_handed(OF_KINDS[kind], elements.nodes(self.grids), points))
+            Block(kind, right_handed(kind, elements.nodes(self.grids), points))
             for kind, elements in self.solids.items()
         ]
         parts = _by_property([n for elements in self.solids.values() for n in elements.properties])
@@ -327,16 +309,6 @@ def _grids_of(card: Card, kind: _Solid) -> list[int]:
         remedy = "convert the mesh to elements of one order in the program that wrote the deck"
         raise refused(card.where, f"{card.name} {card.text(0)} {words}: {remedy}")
     return given if there else corners
-
-
-def _right_handed(kind: _Solid, nodes: Array, points: Array) -> Array:
-    """Return elements of which those with corners in the other sense, which Nastran allows, are mirrored."""
-    base, top = points[nodes[:, : kind.base]], points[nodes[:, kind.base : kind.corners]]
-    middle = base.mean(axis=1)
-    normal = np.cross(base - middle[:, None], np.roll(base, -1, axis=1) - middle[:, None]).sum(axis=1)
-    is_left_handed = np.sum(normal * (top.mean(axis=1) - middle), axis=1) < 0.0
-    mirror = kind.mirror[: nodes.shape[1]]
-    return np.where(is_left_handed[:, None], nodes[:, mirror], nodes)
 
 
 def _by_property(properties: list[int]) -> dict[str, Array]:
