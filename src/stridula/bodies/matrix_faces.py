@@ -108,7 +108,7 @@ class MatrixFace:
         return hashlib.sha256(self.mesh._digest + words + self.degrees.tobytes()).digest()
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, MatrixFace) and self.digest == other.digest
+        return type(other) is type(self) and self.digest == getattr(other, "digest", None)
 
     def __hash__(self) -> int:
         return hash(self.digest)

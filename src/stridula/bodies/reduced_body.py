@@ -429,14 +429,12 @@ class ReducedBody(NamedPoints):
     def _digest(self) -> bytes:
         content = hashlib.sha256()
         for value in self._values:
-            parts = sorted(value.items()) if isinstance(value, Mapping) else [("", value)]
+            parts: list[tuple[str, Any]] = sorted(value.items()) if isinstance(value, Mapping) else [("", value)]
             for name, part in parts:
                 if stays_sparse(part):
                     content.update(b"".join(array.tobytes() for array in (part.indptr, part.indices, part.data)))
                     part = part.shape
-                if isinstance(part, MatrixFace):
-                    content.update(part.digest)
-                    continue
+                part = getattr(part, "digest", part)
                 is_array = isinstance(part, np.ndarray)
                 content.update(repr((name, part.shape if is_array else part, len(parts))).encode())
                 content.update(part.tobytes() if is_array else b"")

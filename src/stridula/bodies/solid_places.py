@@ -79,6 +79,8 @@ class Sampled(FacePoints):
 
     Attributes
     ----------
+    place, area, normal : ndarray
+        As in `FacePoints`.
     nodes : ndarray of int, shape (nodes of the element,)
         Its nodes.
     values : ndarray, shape (points, nodes of the element)

@@ -95,7 +95,7 @@ class SurfaceContact:
 
     def __post_init__(self) -> None:
         instance("body", self.body, (SolidBody, ReducedBody))
-        if self.overlay and not isinstance(self.body, SolidBody):
+        if self.overlay and self.body.kind != SolidBody.kind:
             raise ArgumentError("overlay", "be False for a ReducedBody", self.overlay)
         choice("face", self.face, self.body.face_names or ("none",))
         instance("track", self.track, (AxisymmetricBody, SolidBody, RigidTrack))
@@ -128,10 +128,9 @@ class SurfaceContact:
     @cached_property
     def points(self) -> FacePoints:
         """The points of the face: places, areas and outward normals."""
-        if self.overlay and isinstance(self.body, SolidBody):
-            return overlaid(
-                self.body.face(self.face), self.body.mesh, self.track.face(self.track_face), self.track.mesh
-            )
+        if self.overlay:
+            body: Any = self.body
+            return overlaid(body.face(self.face), body.mesh, self.track.face(self.track_face), self.track.mesh)
         return self.body.face_points(self.face)
 
     @property
