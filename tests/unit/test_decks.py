@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import stridula as st
+from stridula.bodies.decks import abaqus
 from stridula.doubtful import DoubtfulValue
 
 CUBE = ["0, 0, 0", "1, 0, 0", "1, 1, 0", "0, 1, 0", "0, 0, 1", "1, 0, 1", "1, 1, 1", "0, 1, 1"]
@@ -201,6 +202,71 @@ def test_nodes_between_two(tmp_path):
     assert mesh.nodes[:, 0].tolist().count(1.0) == 4
 
 
+def test_spherical_coordinates(tmp_path):
+    """A part of a shell between two spheres: longitudes from 0 to 90 degrees, latitudes from 30 to 60."""
+    angles = [(0, 30), (90, 30), (90, 60), (0, 60)]
+    rows = "".join(
+        f"{4 * layer + k + 1}, {radius}, {longitude}, {latitude}\n"
+        for layer, radius in enumerate((0.1, 0.12))
+        for k, (longitude, latitude) in enumerate(angles)
+    )
+    mesh = read(tmp_path, f"*NODE, SYSTEM=S\n{rows}*ELEMENT, TYPE=C3D8\n1, 1, 2, 3, 4, 5, 6, 7, 8\n")
+    np.testing.assert_allclose(np.linalg.norm(mesh.nodes, axis=1), [0.1] * 4 + [0.12] * 4, rtol=1e-12)
+    c, s = np.sqrt(0.75), 0.5
+    lower = 0.1 * np.array([[c, 0, s], [0, c, s], [0, s, c], [s, 0, c]])
+    np.testing.assert_allclose(mesh.nodes[:4], lower, atol=1e-15)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_nodes_on_arcs(seed, tmp_path):
+    """Equal steps along random arcs in space, of more than half a turn too, about a node or a place as the centre."""
+    rng = np.random.default_rng(seed)
+    centre, radius, steps = rng.normal(size=3), rng.uniform(0.5, 3.0), int(rng.integers(2, 7))
+    first, second, normal = np.linalg.qr(rng.normal(size=(3, 3)))[0].T
+    normal = np.cross(first, second)
+    angle = rng.uniform(0.1, 1.9) * np.pi
+    along = np.linspace(0.0, angle, steps + 1)
+    arc = centre + radius * (np.cos(along)[:, None] * first + np.sin(along)[:, None] * second)
+    node, short = seed % 2 == 0, angle < 3.0 and seed % 3 > 0
+    words = [
+        "101",
+        str(101 + 3 * steps),
+        "3",
+        "99" if node else "",
+        *(["", "", ""] if node else map(repr, centre.tolist())),
+    ]
+    words += [] if short else map(repr, (rng.uniform(0.5, 2.0) * normal).tolist())
+    rows = [(99, centre), (101, arc[0]), (101 + 3 * steps, arc[-1])]
+    text = "*NODE\n" + "".join(
+        f"{number}, {x!r}, {y!r}, {z!r}\n" for number, (x, y, z) in ((n, p.tolist()) for n, p in rows)
+    )
+    text += f"*NGEN, LINE=C, NSET=ARC\n{', '.join(words)}\n"
+    found = abaqus_nodes(tmp_path, text)
+    np.testing.assert_allclose([found[101 + 3 * k] for k in range(steps + 1)], arc, atol=1e-12)
+
+
+def abaqus_nodes(tmp_path, text) -> dict[int, np.ndarray]:
+    """Return the nodes of a deck by their number, read as points of the set of all in the order of numbers."""
+    path = tmp_path / "nodes.inp"
+    path.write_text(text, encoding="latin-1")
+    reader = abaqus._Reader()
+    reader.read(path)
+    return {number: np.array(place) for number, place in reader.deck_scope.nodes.items()}
+
+
+def test_centres_of_arcs_in_other_coordinates(tmp_path):
+    text = "*NODE\n1, 2, 1, 0\n3, 1, 2, 0\n*NGEN, LINE=C, SYSTEM={}\n1, 3, 1, , {}\n"
+    place = np.array([1.0, 1.0, 0.0]) + np.sqrt([0.5, 0.5, 0.0])
+    for form, centre in (("RC", "1, 1, 0"), ("C", "1.4142135623730951, 45, 0"), ("S", "1.4142135623730951, 45, 0")):
+        np.testing.assert_allclose(abaqus_nodes(tmp_path, text.format(form, centre))[2], place, rtol=1e-12)
+
+
+def test_a_whole_circle(tmp_path):
+    """Both ends at the same place, with the normal of the circle."""
+    found = abaqus_nodes(tmp_path, "*NODE\n1, 1, 0, 0\n5, 1, 0, 0\n*NGEN, LINE=C\n1, 5, 1, , 0, 0, 0, 0, 0, -2\n")
+    np.testing.assert_allclose([found[k] for k in (2, 3, 4)], [[0, -1, 0], [-1, 0, 0], [0, 1, 0]], atol=1e-15)
+
+
 def test_other_things_are_counted_in_a_line(tmp_path):
     text = f"*NODE\n{cube()}*ELEMENT, TYPE=c3d8\n1, 1, 2, 3, 4, 5, 6, 7, 8\n"
     text += "*ELEMENT, TYPE=MASS, ELSET=L\n2, 7\n*MASS, ELSET=L\n0.25\n"
@@ -224,10 +290,18 @@ ELEMENT = "*ELEMENT, TYPE=C3D8\n1, 1, 2, 3, 4, 5, 6, 7, 8\n"
         ("*NODE\n1, 0, x, 0\n", "line 2: *NODE needs a number as entry 3, got 'x'"),
         ("*NODE\n1, nan, 0, 0\n", "line 2: coordinates must be finite"),
         ("*NODE\na, 0, 0, 0\n", "line 2: *NODE needs a whole number as entry 1, got 'a'"),
-        ("*NODE, SYSTEM=S\n1, 0, 0, 0\n", "line 1: *NODE, SYSTEM=S is not read"),
+        ("*NODE, SYSTEM=T\n1, 0, 0, 0\n", "line 1: *NODE, SYSTEM=T is not read: give rectangular (R)"),
         (NODES + "1, 3, 0, 0\n", "line 10: node 1 is given twice, at different places"),
         (NODES + "*NFILL\n1, 2, 3\n", "line 10: *NFILL is not read"),
-        (NODES + "*NGEN, LINE=C\n1, 2\n", "line 10: *NGEN with LINE= is not read"),
+        (NODES + "*NGEN, LINE=P\n1, 2, 1, 3\n", "line 10: *NGEN, LINE=P is not read: write the nodes on the curve"),
+        (NODES + "*NGEN, LINE=C\n1, 2\n", "line 11: *NGEN needs a number as entry 5, got ''"),
+        (NODES + "*NGEN, LINE=C\n1, 2, 1, 99\n", "line 11: *NGEN has the centre 99, a node which was not given"),
+        (NODES + "*NGEN, LINE=C\n1, 2, 1, 3\n", "line 11: *NGEN, LINE=C needs ends that are equally far"),
+        (NODES + "*NGEN, LINE=C\n1, 2, 1, , 0.5, 0, 0\n", "line 11: *NGEN, LINE=C needs the normal of an arc of 180"),
+        (
+            "*SYSTEM\n1, 0, 0\n" + NODES + "*NGEN, LINE=C\n1, 3, 1, , 1, 0, 0\n",
+            "line 13: *NGEN below *SYSTEM needs the number of a node",
+        ),
         ("*INCLUDE, INPUT=/dev/zero\n", "line 1: *INCLUDE must name a file below the folder of the deck"),
         ("*INCLUDE, INPUT=../other.inp\n", "line 1: *INCLUDE must name a file below the folder of the deck"),
         ("*INCLUDE, INPUT=deck.inp\n", "line 1: *INCLUDE of 'deck.inp', which includes itself"),

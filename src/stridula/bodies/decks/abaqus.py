@@ -38,6 +38,8 @@ FACES = {
     6: ((0, 1, 2), (3, 5, 4), (0, 3, 4, 1), (1, 4, 5, 2), (2, 5, 3, 0)),
     8: ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
 }
+# Largest relative difference of the radii at both ends of an arc, from decks of a few digits.
+LARGEST_RADIUS_ERROR = 1e-3
 # Keywords that make nodes or elements from others.
 MADE = ("NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "EL GEN", "EL COPY")
 
@@ -187,9 +189,7 @@ class _Reader:
 
     def node(self, card: Card) -> None:
         """Read nodes."""
-        form = card.parameters.get("SYSTEM", "R").upper()
-        if form not in ("R", "C"):
-            raise card.wrong(f"*NODE, SYSTEM={form} is not read: give rectangular (R) or cylindrical (C) coordinates")
+        form = _form(card)
         numbers, places = [], []
         for row in card.rows:
             numbers.append(card.whole(row, 0))
@@ -198,9 +198,7 @@ class _Reader:
         if not np.isfinite(given).all():
             row = card.rows[int(np.flatnonzero(~np.isfinite(given).all(axis=1))[0])]
             raise card.wrong("coordinates must be finite", row)
-        if form == "C":
-            angle = np.radians(given[:, 1])
-            given = np.stack([given[:, 0] * np.cos(angle), given[:, 0] * np.sin(angle), given[:, 2]], axis=1)
+        given = _rectangular(form, given)
         self.put_nodes(card, numbers, self.local(given))
         if name := card.parameters.get("NSET"):
             self.scope.sets.nodes.add(name, numbers)
@@ -213,9 +211,11 @@ class _Reader:
                 raise card.wrong(f"node {number} is given twice, at different places", row)
 
     def between(self, card: Card) -> None:
-        """Make nodes on the straight line between two."""
-        if card.parameters.get("LINE"):
-            raise card.wrong("*NGEN with LINE= is not read: write the nodes on the curve into the deck")
+        """Make nodes on the straight line or the arc between two."""
+        line, form = card.parameters.get("LINE", "").upper(), _form(card)
+        if line not in ("", "C"):
+            words = "is not read: write the nodes on the curve into the deck, or use an arc, LINE=C"
+            raise card.wrong(f"*NGEN, LINE={line} {words}")
         for row in card.rows:
             first, last = card.whole(row, 0), card.whole(row, 1)
             by = card.whole(row, 2) if len(row.words) > 2 and row.words[2] else 1
@@ -226,9 +226,23 @@ class _Reader:
             ends = np.array([self.scope.nodes[first], self.scope.nodes[last]])
             numbers = list(range(first, last, by))[1:]
             share = np.arange(1, len(numbers) + 1)[:, None] / (len(numbers) + 1)
-            self.put_nodes(card, numbers, ends[0] + share * (ends[1] - ends[0]))
+            places = ends[0] + share * (ends[1] - ends[0])
+            if line == "C":
+                places = _arc(card, row, ends, self.extra_point(card, row, form), share)
+            self.put_nodes(card, numbers, places)
             if name := card.parameters.get("NSET"):
                 self.scope.sets.nodes.add(name, [first, *numbers, last])
+
+    def extra_point(self, card: Card, row: Row, form: str) -> Array:
+        """Return the centre of an arc: a node, or coordinates."""
+        if len(row.words) > 3 and row.words[3]:
+            node = card.whole(row, 3)
+            if node not in self.scope.nodes:
+                raise card.wrong(f"*NGEN has the centre {node}, a node which was not given", row)
+            return np.array(self.scope.nodes[node])
+        if self.local is not _as_given:
+            raise card.wrong("*NGEN below *SYSTEM needs the number of a node as the centre of its arc", row)
+        return _rectangular(form, np.array([[card.number(row, at) for at in (4, 5, 6)]]))[0]
 
     def element(self, card: Card) -> None:
         """Read elements; all but solids are counted."""
@@ -331,6 +345,62 @@ def _wrapped(card: Card, count: int) -> Iterable[tuple[Row, list[str]]]:
             words, first = [], None
     if first is not None:
         raise card.wrong(f"an element needs {count - 1} nodes, got {len(words) - 1}", first)
+
+
+def _form(card: Card) -> str:
+    """Return the form of coordinates: R, C or S."""
+    form = card.parameters.get("SYSTEM", "R").upper()
+    if form not in ("R", "RC", "C", "S"):
+        words = "rectangular (R), cylindrical (C) or spherical (S) coordinates"
+        raise card.wrong(f"*{card.keyword}, SYSTEM={form} is not read: give {words}")
+    return form[0]
+
+
+def _rectangular(form: str, given: Array) -> Array:
+    """Return places from rectangular, cylindrical or spherical coordinates, with angles in degrees.
+
+    The second angle of spherical coordinates is the latitude, from the plane of x and y towards z: radius, longitude
+    and latitude form a right-handed system, as the axes of ``*TRANSFORM, TYPE=S`` do.
+    """
+    if form == "R":
+        return given
+    radius, longitude, height = given[:, 0], np.radians(given[:, 1]), given[:, 2]
+    if form == "S":
+        latitude = np.radians(height)
+        radius, height = radius * np.cos(latitude), radius * np.sin(latitude)
+    return np.stack([radius * np.cos(longitude), radius * np.sin(longitude), height], axis=1)
+
+
+def _arc(card: Card, row: Row, ends: Array, centre: Array, share: Array) -> Array:
+    """Return places on the arc between two places at shares of its angle.
+
+    It turns about its normal by the right hand; without a normal it is the arc of less than 180 degrees.
+    """
+    start, end = ends - centre
+    radii = np.linalg.norm([start, end], axis=1)
+    if not radii.all() or abs(radii[1] / radii[0] - 1.0) > LARGEST_RADIUS_ERROR:
+        got = f"{radii[0]:.6g} and {radii[1]:.6g}"
+        raise card.wrong(f"*NGEN, LINE=C needs ends that are equally far from the centre, got {got}", row)
+    given = np.array([card.number(row, at, 0.0) for at in (7, 8, 9)])
+    across = np.cross(start, end)
+    is_flat = float(np.linalg.norm(across)) <= 1e-9 * radii.prod()
+    if is_flat and not given.any():
+        raise card.wrong("*NGEN, LINE=C needs the normal of an arc of 180 degrees or more as entries 8 to 10", row)
+    # The plane of an arc is that of its ends and centre, unless these are on a line.
+    normal = across if not is_flat else given - (given @ start) / radii[0] ** 2 * start
+    if given @ normal < 0.0:
+        normal = -normal
+    size = float(np.linalg.norm(normal))
+    if not size:
+        raise card.wrong("*NGEN, LINE=C needs a normal across the radius of the arc", row)
+    normal = normal / size
+    angle = float(np.arctan2(normal @ across, start @ end))
+    if given.any() and angle <= 1e-9:
+        angle += 2.0 * np.pi
+    side = np.cross(normal, start)
+    turned = np.cos(angle * share) * start + np.sin(angle * share) * side
+    # Given in a few digits, the ends have slightly different radii.
+    return np.asarray(centre + turned * (1.0 + share * (radii[1] / radii[0] - 1.0)))
 
 
 def _as_given(places: Array) -> Array:
