@@ -261,6 +261,13 @@ def test_centres_of_arcs_in_other_coordinates(tmp_path):
         np.testing.assert_allclose(abaqus_nodes(tmp_path, text.format(form, centre))[2], place, rtol=1e-12)
 
 
+@pytest.mark.parametrize(("normal", "sign"), [("0, 0, 1", 1.0), ("0, 0.5, -3", -1.0)])
+def test_half_a_circle(normal, sign, tmp_path):
+    """The side is that of the normal, of which the part along the radius does not count."""
+    found = abaqus_nodes(tmp_path, f"*NODE\n1, 0, 1, 0\n3, 0, -1, 0\n*NGEN, LINE=C\n1, 3, 1, , 0, 0, 0, {normal}\n")
+    np.testing.assert_allclose(found[2], [-sign, 0.0, 0.0], atol=1e-15)
+
+
 def test_a_whole_circle(tmp_path):
     """Both ends at the same place, with the normal of the circle."""
     found = abaqus_nodes(tmp_path, "*NODE\n1, 1, 0, 0\n5, 1, 0, 0\n*NGEN, LINE=C\n1, 5, 1, , 0, 0, 0, 0, 0, -2\n")

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 
 from ..arrays import Array
-from .decks.deck import Elastic
+from .decks.deck import Elastic, Lump
 
 # Beginnings of the names of kinds of solid cells.
 SOLID = ("tetra", "hexahedron", "wedge", "pyramid", "polyhedron", "VTK_LAGRANGE_TETRA", "VTK_LAGRANGE_HEXA")
@@ -49,6 +50,10 @@ class Held:
         Elastic materials by name.
     of_materials : dict
         The same as `groups` for the elements of each material.
+    lumps : list of Lump
+        Masses and springs.
+    left_out : Counter
+        Number of other things that are not read, by name.
     """
 
     points: Array
@@ -58,3 +63,5 @@ class Held:
     parts: dict[str, OfBlocks] = field(default_factory=dict)
     materials: dict[str, Elastic] = field(default_factory=dict)
     of_materials: dict[str, OfBlocks] = field(default_factory=dict)
+    lumps: list[Lump] = field(default_factory=list)
+    left_out: Counter[str] = field(default_factory=Counter)

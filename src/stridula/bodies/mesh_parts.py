@@ -12,11 +12,36 @@ from typing import Any
 from ..checks import ArgumentError, instance, listed, positive
 from ..disk import named
 from . import solid_files
-from .decks.deck import Elastic
+from .decks.deck import Elastic, Lump
 from .finite_files import check_finite_in
 from .sections import Material
 from .solid_kinds import words_of
 from .solid_mesh import SolidMesh
+
+
+@dataclass(frozen=True)
+class MeshSpring:
+    """A spring of a mesh file.
+
+    Attributes
+    ----------
+    first : str
+        Name of its point of the part that has it.
+    second : str
+        Name of its other point; empty for the ground.
+    part : str
+        Name of the part of the other point; empty for the ground.
+    direction : tuple of float
+        World direction along which it acts, a unit vector.
+    stiffness : float
+        Stiffness [N/m].
+    """
+
+    first: str
+    second: str
+    part: str
+    direction: tuple[float, ...]
+    stiffness: float
 
 
 @dataclass(frozen=True)
@@ -36,6 +61,12 @@ class MeshPart:
         The properties that the file does not give, in words; empty if `materials` are known.
     cells : mapping
         Number of elements of each kind in the file, such as ``"wedges of 6 nodes"``; the mesh may have other elements.
+    masses : mapping
+        Point masses of a deck [kg] by the name of their point, such as ``"node 12"``; they are not in the mesh.
+    springs : tuple of MeshSpring
+        Springs of a deck from a point of this part to the ground, or to a point of this or another part.
+    points : mapping
+        Places [m] of the points of masses and springs by name, as `SolidBody` takes them.
     """
 
     name: str
@@ -43,6 +74,9 @@ class MeshPart:
     given: Mapping[str, Material] = field(default_factory=dict)
     missing: str = ""
     cells: Mapping[str, int] = field(default_factory=dict)
+    masses: Mapping[str, float] = field(default_factory=dict)
+    springs: tuple[MeshSpring, ...] = ()
+    points: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
     @property
     def mass(self) -> float:
@@ -112,6 +146,14 @@ def read_parts(path: str | os.PathLike[str], scale: float = 1.0) -> dict[str, Me
             name: st.SolidBody(part.mesh, part.materials, cutoff=8e3, name=name)
             for name, part in st.read_parts("brake.inp", scale=1e-3).items()
         }
+
+    Springs of a part to the ground, as connections of its body::
+
+        pad = st.SolidBody(part.mesh, part.materials, points=part.points, cutoff=8e3)
+        springs = [
+            st.Spring(pad.at(one.first), stiffness=one.stiffness, direction=one.direction)
+            for one in part.springs if not one.part
+        ]
     """
     instance("path", path, (str, os.PathLike))
     length = positive("scale", scale)
@@ -130,7 +172,24 @@ def _part(path: str | os.PathLike[str], name: str, read: solid_files.ReadPart, l
     if covered != len(mesh.elements):
         unknown.append(f"{named(path)} gives a material to {covered} of {len(mesh.elements)} elements")
     cells = {words_of(kind): number for kind, number in read.cells.items()}
-    return MeshPart(name, mesh, MappingProxyType(given), listed(unknown) if unknown else "", MappingProxyType(cells))
+    # Mass and stiffness per unit of length in units of newton, second and the length.
+    masses = {of: float(f"{value / length:.12g}") for of, value in read.masses.items()}
+    return MeshPart(
+        name,
+        mesh,
+        MappingProxyType(given),
+        listed(unknown) if unknown else "",
+        MappingProxyType(cells),
+        MappingProxyType(masses),
+        tuple(_spring(one, parts, length) for one, parts in read.springs),
+        MappingProxyType({of: tuple((place * length).tolist()) for of, place in read.points.items()}),
+    )
+
+
+def _spring(one: Lump, parts: list[str], length: float) -> MeshSpring:
+    """Return a spring in SI units."""
+    second, part = (one.labels[1], parts[1]) if len(parts) > 1 else ("", "")
+    return MeshSpring(one.labels[0], second, part, one.direction, float(f"{one.value / length:.12g}"))
 
 
 def _lacking(one: Elastic) -> list[str]:

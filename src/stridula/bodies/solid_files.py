@@ -7,7 +7,7 @@ import io
 import os
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ from ..doubtful import LeftOut, warn_of
 from ..extras import named_extras
 from .cut_elements import can_be_cut, cut_into_tetrahedra, triangles_of
 from .decks.abaqus import read_abaqus
-from .decks.deck import Deck, DeckError, Elastic
+from .decks.deck import Deck, DeckError, Elastic, Lump
 from .decks.med import read_med
 from .decks.medit import read_medit
 from .decks.nastran import read_nastran
@@ -72,6 +72,7 @@ def read_mesh(path: str | os.PathLike[str], part: str | None = None) -> dict[str
         parts.
     """
     held = read_held(path)
+    _warn_of(path, held.left_out + Counter(one.word for one in held.lumps))
     try:
         if part is not None:
             held = only(held, *named_part(held, part))
@@ -98,12 +99,21 @@ class ReadPart:
         Names of the materials by that of their group.
     cells : dict
         Number of solid elements of each kind in the file, by the name of the kind in meshio.
+    masses : dict
+        Masses by the name of their point.
+    springs : list
+        Springs with the name of the part of each end, None for the ground.
+    points : dict
+        Places of the points of masses and springs by name.
     """
 
     mesh: dict[str, Any]
     materials: dict[str, Elastic]
     names: dict[str, str]
     cells: dict[str, int]
+    masses: dict[str, float] = field(default_factory=dict)
+    springs: list[tuple[Lump, list[str]]] = field(default_factory=list)
+    points: dict[str, Array] = field(default_factory=dict)
 
 
 def read_each(path: str | os.PathLike[str]) -> dict[str, ReadPart]:
@@ -114,9 +124,33 @@ def read_each(path: str | os.PathLike[str]) -> dict[str, ReadPart]:
         if not several:
             solid = {at: np.arange(len(one.data)) for at, one in enumerate(held.cells) if one.type.startswith(SOLID)}
             several = {next(called(held, solid), Path(path).stem): solid}
-        return {name: _read_part(only(held, name, part)) for name, part in several.items()}
+        found = {name: _read_part(only(held, name, part)) for name, part in several.items()}
+        left_out = held.left_out + _with_lumps(held, several, found)
     except (ArithmeticError, LookupError, TypeError, AttributeError) as error:
         raise ValueError(f"cannot read {named(path)}: {in_one_line(error)}") from error
+    _warn_of(path, left_out)
+    return found
+
+
+def _with_lumps(held: Held, several: dict[str, OfBlocks], found: dict[str, ReadPart]) -> Counter[str]:
+    """Add masses and springs to the parts of their points; return the number of those with a point of no part."""
+    lone, part_of = Counter[str](), dict[int, str]()
+    for name, part in several.items() if held.lumps else ():
+        nodes = np.unique(np.concatenate([held.cells[at].data[those].ravel() for at, those in part.items()]))
+        part_of |= dict.fromkeys(nodes.tolist(), name)
+    for lump in held.lumps:
+        if not all(point in part_of for point in lump.points):
+            lone[lump.word] += 1
+            continue
+        parts = [part_of[point] for point in lump.points]
+        for name, label, point in zip(parts, lump.labels, lump.points, strict=True):
+            found[name].points[label] = held.points[point]
+        first = found[parts[0]]
+        if lump.direction:
+            first.springs.append((lump, parts))
+        else:
+            first.masses[lump.labels[0]] = first.masses.get(lump.labels[0], 0.0) + lump.value
+    return lone
 
 
 def _read_part(held: Held) -> ReadPart:
@@ -156,14 +190,11 @@ def read_held(path: str | os.PathLike[str]) -> Held:
 
 
 def _of_deck(path: str | os.PathLike[str], ending: str, prefix: str) -> Held:
-    """Return the content of a deck, with a warning of what it has besides."""
+    """Return the content of a deck."""
     try:
         deck = DECKS[ending](path)
     except DeckError as error:
         raise ValueError(f"{prefix}: {in_one_line(error)}") from error
-    if deck.left_out:
-        words = listed(f"{count} {name}" for name, count in deck.left_out.items())
-        warn_of([f"{named(path)}: not read: {words}"], LeftOut)
     blocks, groups = [*deck.blocks], {name: _by_block(deck, those) for name, those in deck.element_sets.items()}
     for name, faces in deck.surfaces.items():
         if faces:
@@ -179,7 +210,24 @@ def _of_deck(path: str | os.PathLike[str], ending: str, prefix: str) -> Held:
             materials.setdefault(material, []).append(those)
     of_materials = {name: _by_block(deck, np.unique(np.concatenate(those))) for name, those in materials.items()}
     cells = [Cells(one.kind, one.nodes) for one in blocks]
-    return Held(deck.points, cells, groups, dict(deck.node_sets), parts, dict(deck.materials), of_materials)
+    return Held(
+        deck.points,
+        cells,
+        groups,
+        dict(deck.node_sets),
+        parts,
+        dict(deck.materials),
+        of_materials,
+        deck.lumps,
+        deck.left_out,
+    )
+
+
+def _warn_of(path: str | os.PathLike[str], left_out: Counter[str]) -> None:
+    """Warn of what is not read."""
+    if left_out:
+        words = listed(f"{count} {name}" for name, count in left_out.items())
+        warn_of([f"{named(path)}: not read: {words}"], LeftOut)
 
 
 def _surface_name(deck: Deck, name: str) -> str:

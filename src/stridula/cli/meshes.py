@@ -13,6 +13,7 @@ from rich.table import Table
 
 from ..arrays import Array
 from ..bodies import Material, MeshPart, SolidMesh, read_parts
+from ..bodies.mesh_parts import MeshSpring
 from ..bodies.mesh_quality import SLIVER
 from ..bodies.sections import doubts_of_material
 from ..checks import ArgumentError, choice, counted, listed, positive
@@ -91,6 +92,8 @@ def facts_of(part: MeshPart) -> dict[str, str]:
         "faces": _groups(f"{name} ({mesh.face(name).area.sum():.4g} m²)" for name in mesh.faces),
         "node sets": _groups(f"{name} ({counted(len(those), 'node')})" for name, those in mesh.node_sets.items()),
         "materials": "\n".join([*map(_material, part.given, part.given.values()), part.missing]).strip(),
+        "point masses": _groups(f"{name}: {value:.4g} kg" for name, value in part.masses.items()),
+        "springs": _groups(map(_spring, part.springs)),
         "volume": f"{mesh.volume.sum():.4g} m³",
         "mass": "" if part.missing else f"{part.mass:.4g} kg",
     }
@@ -116,6 +119,11 @@ def _groups(words: Iterable[str]) -> str:
 
 def _material(name: str, one: Material) -> str:
     return f"{name}: {one.young / 1e9:.4g} GPa, {one.density:.4g} kg/m³, Poisson's ratio {one.poisson:.4g}"
+
+
+def _spring(one: MeshSpring) -> str:
+    other = f"{one.second} of {one.part}" if one.part else "the ground"
+    return f"{one.first} to {other}, along ({_numbers(np.array(one.direction))}): {one.stiffness:.4g} N/m"
 
 
 def _numbers(values: Array, joint: str = ", ") -> str:

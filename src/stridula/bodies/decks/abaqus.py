@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ...arrays import Array
+from .abaqus_lumps import FORMS, Lumps, add_lumps
 from .abaqus_sets import Entry, Named, Sets, entries_of
 from .deck import Block, Deck, Elastic
 from .keywords import Card, Row, read_cards
@@ -62,6 +63,8 @@ class Scope:
         Type and rows of surfaces by name: an element or a set, and the name of a face.
     sections : list
         Names of a set of elements and of its material.
+    lumps : Lumps
+        Masses and springs.
     """
 
     name: str = ""
@@ -70,6 +73,7 @@ class Scope:
     sets: Sets = field(default_factory=Sets)
     surfaces: dict[str, list[tuple[Entry, str]]] = field(default_factory=dict)
     sections: list[tuple[str, str]] = field(default_factory=list)
+    lumps: Lumps = field(default_factory=Lumps)
 
 
 @dataclass(frozen=True)
@@ -116,6 +120,7 @@ class _Reader:
         self.scope, self.material = self.deck_scope, ""
         self.local: Callable[[Array], Array] = _as_given
         self.open: list[Scope] = []
+        self.has_transform = False
         self.does: dict[str, Callable[[Card], None]] = {
             "PART": self.part,
             "END PART": self.end,
@@ -134,6 +139,9 @@ class _Reader:
             "ELASTIC": self.elastic,
             "DENSITY": self.density,
             "SOLID SECTION": self.section,
+            "MASS": self.lump,
+            "SPRING": self.lump,
+            "TRANSFORM": self.transform,
         }
 
     def read(self, path: Path) -> Deck:
@@ -178,7 +186,13 @@ class _Reader:
             raise card.wrong(f"two instances have the name {name!r}")
         part = self.parts[of.upper()]
         own = Scope(
-            name, dict(part.nodes), dict(part.elements), part.sets.copied(), dict(part.surfaces), [*part.sections]
+            name,
+            dict(part.nodes),
+            dict(part.elements),
+            part.sets.copied(),
+            dict(part.surfaces),
+            [*part.sections],
+            part.lumps.copied(),
         )
         self.instances.append(Placed(name, own, _motion(card)))
         self.begin(own)
@@ -249,6 +263,9 @@ class _Reader:
         form = _named(card, "TYPE").upper()
         solid = SOLID.fullmatch(form)
         count = int(solid[1]) if solid else 0
+        if form in FORMS:
+            self.scope.lumps.add(card, form)
+            return
         if count not in KINDS:
             self.left_out[form] += len(card.rows)
             return
@@ -315,6 +332,14 @@ class _Reader:
         """Note the material of a set of elements."""
         if "ELSET" in card.parameters and "MATERIAL" in card.parameters:
             self.scope.sections.append((card.parameters["ELSET"], card.parameters["MATERIAL"]))
+
+    def lump(self, card: Card) -> None:
+        """Note the value of masses or springs."""
+        self.scope.lumps.values.append(card)
+
+    def transform(self, card: Card) -> None:
+        """Note that nodes have directions of their own."""
+        self.has_transform = True
 
 
 def replaced(card: Card, rows: list[Row]) -> Card:
@@ -465,6 +490,11 @@ def _joined(read: _Reader) -> Deck:
         first_point, first_element = first_point + len(numbers), first_element + len(element_of)
     deck.points = np.concatenate(points)
     _name_groups(read, deck, where)
+    scopes = [(one.scope, point_of, one.moved) for one, point_of, _ in where]
+    if not any(scope is read.assembly for scope, _, _ in scopes):
+        scopes.append((read.assembly, {}, _as_given))
+    of_scopes = [(scope.lumps, scope.sets, point_of, moved) for scope, point_of, moved in scopes]
+    add_lumps(deck, of_scopes, {one.name.upper(): points for one, points, _ in where if one.name}, read.has_transform)
     return deck
 
 

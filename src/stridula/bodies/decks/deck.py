@@ -50,6 +50,31 @@ class Elastic:
     density: float = np.nan
 
 
+@dataclass(frozen=True)
+class Lump:
+    """A mass at a node, or a spring between two nodes or from one to the ground, in units of the deck.
+
+    Attributes
+    ----------
+    word : str
+        Name of its kind in the deck.
+    points : tuple of int
+        Indices of its points.
+    labels : tuple of str
+        Names of these points, such as "node 12", without that of their part.
+    value : float
+        Mass, or stiffness of a spring.
+    direction : tuple of float
+        Direction in which a spring acts, in global coordinates; empty for a mass.
+    """
+
+    word: str
+    points: tuple[int, ...]
+    labels: tuple[str, ...]
+    value: float
+    direction: tuple[float, ...] = ()
+
+
 @dataclass
 class Deck:
     """A model read from a deck.
@@ -72,6 +97,8 @@ class Deck:
         Name of the material by the name of an element set or of a part.
     left_out : Counter
         Number of elements, or of cards, that are not read, by their name in the deck.
+    lumps : list of Lump
+        Masses and springs.
     """
 
     points: Array
@@ -83,6 +110,7 @@ class Deck:
     materials: dict[str, Elastic] = field(default_factory=dict)
     material_of: dict[str, str] = field(default_factory=dict)
     left_out: Counter[str] = field(default_factory=Counter)
+    lumps: list[Lump] = field(default_factory=list)
 
     @property
     def count(self) -> int:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...arrays import Array
-from .deck import Block, Deck, Elastic
+from .deck import Block, Deck, Elastic, Lump
 from .mirrored import right_handed
 from .nastran_cards import Card, Where, cards, refused
 from .nastran_systems import BASIC, BY_GRIDS, BY_POINTS, Definition, definitions, systems_of
@@ -89,19 +89,23 @@ def read_nastran(path: str | os.PathLike[str]) -> Deck:
 
 @dataclass
 class _Grids:
-    """Grids in the order of the deck, in their own coordinate systems."""
+    """Grids in the order of the deck, in their own coordinate systems; turned ones have directions of their own."""
 
     number: dict[int, int] = field(default_factory=dict)
     systems: list[int | None] = field(default_factory=list)
     coordinates: list[tuple[float, float, float]] = field(default_factory=list)
     where: list[Where] = field(default_factory=list)
     default: int = BASIC
+    is_turned: dict[int, bool] = field(default_factory=dict)
+    is_default_turned: bool = False
 
     def add(self, card: Card) -> None:
         """Add the grid of a card."""
         grid = card.whole(0, "ID")
         system = card.whole(1, "CP") if card.text(1) else None
         place = card.number(2, "X1", 0.0), card.number(3, "X2", 0.0), card.number(4, "X3", 0.0)
+        if card.text(5):
+            self.is_turned[grid] = card.text(5) != "0"
         at = self.number.setdefault(grid, len(self.number))
         if at == len(self.systems):
             self.systems.append(system)
@@ -178,6 +182,9 @@ class _Model:
     materials: dict[str, Elastic] = field(default_factory=dict)
     material_of: dict[str, str] = field(default_factory=dict)
     constraints: list[Card] = field(default_factory=list)
+    masses: list[Card] = field(default_factory=list)
+    springs: list[Card] = field(default_factory=list)
+    stiffness: dict[int, float] = field(default_factory=dict)
     mass_factor: float = 1.0
     left_out: Counter[str] = field(default_factory=Counter)
 
@@ -189,6 +196,10 @@ class _Model:
             "PARAM": self._read_parameter,
             "MAT1": self._read_material,
             "PSOLID": self._read_property,
+            "CONM2": self.masses.append,
+            "CELAS1": self.springs.append,
+            "CELAS2": self.springs.append,
+            "PELAS": self._read_spring_property,
             "SPC": self.constraints.append,
             "SPC1": self.constraints.append,
             **dict.fromkeys((*BY_POINTS, *BY_GRIDS), self._read_systems),
@@ -217,11 +228,13 @@ class _Model:
             parts=parts,
             materials=materials,
             material_of={name: self.material_of[name] for name in parts if name in self.material_of},
+            lumps=[*self._mass_lumps(), *self._spring_lumps()],
             left_out=self.left_out,
         )
 
     def _read_default(self, card: Card) -> None:
         self.grids.default = card.whole(1, "CP", BASIC)
+        self.grids.is_default_turned = card.text(5) not in ("", "0")
 
     def _read_parameter(self, card: Card) -> None:
         if card.text(0).upper() == "WTMASS":
@@ -268,6 +281,43 @@ class _Model:
         name, material = str(card.whole(0, "PID")), str(card.whole(1, "MID"))
         if self.material_of.setdefault(name, material) != material:
             raise refused(card.where, f"PSOLID {name} is given twice, with other materials")
+
+    def _read_spring_property(self, card: Card) -> None:
+        for at in (0, 4):
+            if card.text(at):
+                self.stiffness[card.whole(at, "PID")] = card.number(at + 1, "K", np.nan)
+
+    def _mass_lumps(self) -> Iterator[Lump]:
+        """Yield the masses at grids; those beside their grid are counted."""
+        for card in self.masses:
+            grid, value = card.whole(1, "G"), self.mass_factor * card.number(3, "M", 0.0)
+            has_offset = card.text(2) == "-1" or any(card.number(at, f"X{at - 3}", 0.0) for at in (4, 5, 6))
+            if has_offset or grid not in self.grids.number or not value > 0.0:
+                self.left_out[card.name] += 1
+                continue
+            if any(card.number(at, "an inertia", 0.0) for at in range(8, 14)):
+                self.left_out["rotary inertia of a CONM2"] += 1
+            yield Lump(card.name, (self.grids.number[grid],), (f"node {grid}",), value)
+
+    def _spring_lumps(self) -> Iterator[Lump]:
+        """Yield the springs between grids along x, y or z; others are counted."""
+        for card in self.springs:
+            of, grids = card.number(1, "K", np.nan), [card.whole(at, "G", 0) for at in (2, 4)]
+            ways = [card.whole(at, "C", 0) for at, grid in zip((3, 5), grids, strict=True) if grid]
+            given = [grid for grid in grids if grid]
+            stiffness = of if card.name == "CELAS2" else self.stiffness.get(card.whole(1, "PID", card.whole(0, "EID")))
+            is_known = all(
+                grid in self.grids.number and not self.grids.is_turned.get(grid, self.grids.is_default_turned)
+                for grid in given
+            )
+            if not (
+                given and is_known and stiffness and stiffness > 0.0 and len(set(ways)) == 1 and ways[0] in (1, 2, 3)
+            ):
+                self.left_out[card.name] += 1
+                continue
+            points = tuple(self.grids.number[grid] for grid in given)
+            direction = tuple(np.eye(3)[ways[0] - 1].tolist())
+            yield Lump(card.name, points, tuple(f"node {grid}" for grid in given), stiffness, direction)
 
     def _surfaces(self) -> dict[str, list[Block]]:
         found: dict[str, list[Block]] = {}
