@@ -129,6 +129,7 @@ FIGURES = (
     "directivity",
     "surface",
     "system",
+    "meshes",
     "bodies",
     "animate",
     "animate_surface",

@@ -181,6 +181,36 @@ def test_random_meshes_written_by_meshio(form, kind, seed, tmp_path):
         assert read.node_sets["some nodes"].tolist() == np.flatnonzero(nodes).tolist()
 
 
+@pytest.mark.parametrize("form", ["med", "mesh"])
+@pytest.mark.parametrize("is_mirrored", [False, True])
+@pytest.mark.parametrize("seed", range(3))
+def test_pyramids_in_either_sense(form, is_mirrored, seed, tmp_path, monkeypatch):
+    """A block of random sides as six pyramids about a random place inside."""
+    # meshio writes these, but does not list their dimension.
+    monkeypatch.setitem(meshio._mesh.topological_dimension, "pyramid13", 3)
+    rng = np.random.default_rng(seed)
+    unit = KINDS["hexahedron"]
+    nodes = np.vstack([unit.nodes, rng.uniform(0.3, 0.7, 3)]) * rng.uniform(0.1, 2.0, 3)
+    # Faces are counter-clockwise from outside, the first face of a pyramid from the top.
+    pyramids = np.array([[*face[::-1], 8] for face in unit.faces])
+    if is_mirrored:
+        pyramids[:, [1, 3]] = pyramids[:, [3, 1]]
+    kind = "pyramid"
+    if form == "med":
+        kind, ends = "pyramid13", [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)]
+        pairs = np.sort(pyramids[:, ends].reshape(-1, 2), axis=1)
+        edges, number = np.unique(pairs, axis=0, return_inverse=True)
+        pyramids = np.hstack([pyramids, 9 + number.reshape(6, 8)])
+        nodes = np.vstack([nodes, nodes[edges].mean(axis=1)])
+    meshio.Mesh(nodes, [(kind, pyramids)]).write(
+        tmp_path / f"a.{form}", file_format="med" if form == "med" else "medit"
+    )
+    mesh = st.SolidMesh.read(tmp_path / f"a.{form}")
+    assert mesh.kind == ("tetra10" if form == "med" else "tetra")
+    assert len(mesh.elements) == 12
+    assert mesh.volume.sum() == pytest.approx(np.prod(nodes[:8].max(axis=0)), rel=1e-9)
+
+
 BRICK = """    -1
   2411
          1         1         1        11
@@ -304,6 +334,11 @@ def linked_to_another_file(file) -> None:
     file["ENS_MAA"] = h5py.ExternalLink("other.h5", "/")
 
 
+def with_announced_numbers(file) -> None:
+    del file[f"{STEP}/NOE/COO"]
+    file[f"{STEP}/NOE"].create_dataset("COO", shape=(3 * 10**12,), dtype=float, chunks=(1000,))
+
+
 def changed(path: Path, change) -> None:
     with h5py.File(path, "r+") as file:
         change(file)
@@ -322,6 +357,7 @@ STEP = "ENS_MAA/block/-0000000000000000001-0000000000000000001"
         (lambda file: file["ENS_MAA/block"].attrs.modify("REP", 1), "in Cartesian coordinates"),
         (lambda file: file.pop(f"{STEP}/NOE/COO"), "'COO' is missing"),
         (lambda file: file[f"{STEP}/MAI/TE4/NOD"].__setitem__(0, 99), "cells TE4 have nodes from 1 to 12, got 99"),
+        (with_announced_numbers, "'COO' announces 3000000000000 numbers, but at most"),
         (linked_to_another_file, "'ENS_MAA' is missing, or outside"),
     ],
 )

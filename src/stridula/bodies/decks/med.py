@@ -29,6 +29,8 @@ SOLIDS = {
 # Middles of faces: bottom, the four sides, top.
 TWENTY_SEVEN = [*range(20), 24, 22, 21, 23, 20, 25, 26]
 SHELLS = {"TR3": "triangle", "TR6": "triangle", "TR7": "triangle", "QU4": "quad", "QU8": "quad", "QU9": "quad"}
+# Largest dataset: one may announce more numbers than its file has.
+LARGEST = 2**28
 THIN = ("PO1", "SE2", "SE3", "SE4")
 
 
@@ -167,6 +169,8 @@ class _Reader:
         found = self._of(group, name)
         if not hasattr(found, "external") or found.external or found.is_virtual:
             raise DeckError(0, f"{name!r} must be a dataset within the file")
+        if found.size > LARGEST:
+            raise DeckError(0, f"{name!r} announces {found.size} numbers, but at most {LARGEST} are read")
         return np.asarray(found[()])
 
 
