@@ -22,9 +22,8 @@ REDUCED = (2, 3, 4)
 def text_of(name):
     for path in (DECKS / name, DECKS / f"{name}.gz"):
         if path.exists():
-            opened = gzip.open(path, "rt", errors="replace") if path.suffix == ".gz" else path.open(errors="replace")
-            with opened as file:
-                return file.read()
+            content = path.read_bytes()
+            return (gzip.decompress(content) if path.suffix == ".gz" else content).decode("latin-1")
     return pytest.skip(f"takes {name} of Debian's calculix-ccx-test, which is not installed: it was not read")
 
 
