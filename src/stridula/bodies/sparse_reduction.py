@@ -208,7 +208,8 @@ def residual_shapes(problem: SparseProblem, solve: Solve, kept: Array) -> Array:
     parts = [slice(start, start + AT_ONCE) for start in range(0, forces.shape[1], AT_ONCE)]
     found = []
     for part in parts:
-        tell_done(part.start, forces.shape[1])
+        if len(parts) > 1:
+            tell_done(part.start, forces.shape[1])
         found.append(_static_answers(problem.stiffness, solve, forces[:, part], kept, moved, first[:, part]))
     answers = np.hstack(found or [forces])
     own = np.sqrt(np.maximum(np.sum(answers * (problem.stiffness @ answers), axis=0), 0.0))
