@@ -23,8 +23,8 @@ SECOND, BYTES = 1.0, 1e9
 def rows() -> Iterator[Ratio | str]:
     """Yield time and memory of each mesh, measured once: they are long compared with disturbances."""
     for divisions in DIVISIONS:
-        taken, peak, free, modes = measured(divisions)
-        words = f"{free} degrees of freedom, {modes} modes and residual shapes"
+        (taken, free, modes), peak = in_fresh_process(__file__, *divisions)
+        words = f"{int(free)} degrees of freedom, {int(modes)} modes and residual shapes"
         yield Ratio(f"{words}: time over 1 s", [taken / SECOND])
         if peak is None:
             yield f"{words}: memory skipped, this system does not report the memory of a process"
@@ -32,9 +32,9 @@ def rows() -> Iterator[Ratio | str]:
             yield Ratio(f"{words}: peak memory over 1 GB", [peak / BYTES])
 
 
-def measured(divisions: tuple[int, int, int]) -> tuple[float, float | None, int, int]:
-    """Return the seconds and the peak memory of a fresh process, degrees of freedom and modes."""
-    command = [sys.executable, __file__, "child", *map(str, divisions), *FORM]
+def in_fresh_process(script: str, *words: object) -> tuple[list[float], float | None]:
+    """Return the numbers that a script prints as a "child" with words, and the peak memory of its process [bytes]."""
+    command = [sys.executable, script, "child", *map(str, words), *FORM]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     assert process.stdout is not None
     with process.stdout:
@@ -47,9 +47,8 @@ def measured(divisions: tuple[int, int, int]) -> tuple[float, float | None, int,
         process.wait()
         peak = None
     if process.returncode:
-        raise RuntimeError(f"the mesh of {divisions} ended with exit code {process.returncode}")
-    taken, free, modes = printed.split()
-    return float(taken), peak, int(free), int(modes)
+        raise RuntimeError(f"{' '.join(command[1:])} ended with exit code {process.returncode}")
+    return [float(one) for one in printed.split()], peak
 
 
 def find_modes(divisions: tuple[int, int, int]) -> None:

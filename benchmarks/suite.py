@@ -15,6 +15,7 @@ from pathlib import Path
 
 import against_c
 import brake
+import faces
 import gpu
 import linear_theory
 import machine
@@ -44,6 +45,7 @@ SECTIONS = (
     short_runs,
     space,
     meshes,
+    faces,
     linear_theory,
     maps,
     surveys,

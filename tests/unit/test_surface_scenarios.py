@@ -70,6 +70,30 @@ def test_a_surface_is_the_one_written_in_python(block):
     assert system.drives[0].point == die.at("top")
 
 
+@pytest.mark.parametrize("axis", [None, [0.0, 2.0, 0.0]])
+def test_a_meshed_track_turns(block, axis):
+    given = {"turning": "20 rad/s", "origin": ["20 mm", 0.0, "0.3 m"]} | ({} if axis is None else {"axis": axis})
+    changes = {f"surfaces.0.track.{key}": value for key, value in given.items()}
+    if axis is None:
+        (first,) = problems(block, changes)
+        assert "turning must move the track along its surface" in first
+        return
+    system = st.load_scenario(block, changes).system
+    die, bed = system.bodies
+    expected = st.SurfaceContact(
+        die,
+        "bottom",
+        bed,
+        "top",
+        st.Coulomb(0.3),
+        stiffness=1e12,
+        turning=((0, 1, 0), (0.02, 0, 0.3), 20.0),
+        name="sole",
+    )
+    assert system.contact == expected
+    assert system.contacts[0].surface_velocity[0] == pytest.approx(20.0 * 0.28, rel=0.05)
+
+
 def test_a_surface_stands_on_a_plane_beside_a_contact(block):
     tables = read_tables(block)
     tables["contacts"] = [

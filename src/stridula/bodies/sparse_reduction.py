@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least
-from ..long_tasks import check_wanted
+from ..long_tasks import check_wanted, tell_done
 from .block_lanczos import LONGEST, SETTLED, WIDTH, Inverse, lowest
 from .damping import check_damping_count, damping_rates
 from .factorisation import Solve, factorised
@@ -206,7 +206,11 @@ def residual_shapes(problem: SparseProblem, solve: Solve, kept: Array) -> Array:
     forces, first = forces[:, felt] / sizes[felt], first[:, felt] / sizes[felt]
     forces = forces - moved @ (kept.T @ forces)
     parts = [slice(start, start + AT_ONCE) for start in range(0, forces.shape[1], AT_ONCE)]
-    found = [_static_answers(problem.stiffness, solve, forces[:, part], kept, moved, first[:, part]) for part in parts]
+    found = []
+    for part in parts:
+        if len(parts) > 1:
+            tell_done(part.start, forces.shape[1])
+        found.append(_static_answers(problem.stiffness, solve, forces[:, part], kept, moved, first[:, part]))
     answers = np.hstack(found or [forces])
     own = np.sqrt(np.maximum(np.sum(answers * (problem.stiffness @ answers), axis=0), 0.0))
     # If the modes kept give the whole response to a force, only rounding remains.

@@ -325,6 +325,9 @@ class Builder:
             met = self._body_of_kind((*path, "track", "body"), track["body"], kind)
         if body is None or met is None:
             return None
+        if track.get("turning") is not None:
+            axis, origin = track.get("axis", (0.0, 0.0, 1.0)), track.get("origin", (0.0, 0.0, 0.0))
+            given["turning"] = (axis, origin, track["turning"])
         with self._within(*path):
             try:
                 return SurfaceContact(body, table.pop("face"), met, face, **given, **table)

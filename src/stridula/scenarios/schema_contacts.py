@@ -97,6 +97,12 @@ class SolidTrack(Table):
     """meshed body that is touched: its name among the bodies"""
     face: str
     """name of its face"""
+    turning: is_.AngularVelocity | None = None
+    """angular velocity about its axis, positive counterclockwise with the axis pointing at the viewer [rad/s]"""
+    axis: is_.Direction = (0.0, 0.0, 1.0)
+    """world components of the axis about which it turns, of any length"""
+    origin: is_.Offset = (0.0, 0.0, 0.0)
+    """a point on this axis [m]"""
 
 
 ENDS: Keys = {"first": (Place, ..., "one end"), "second": (Place | None, None, "other end, the ground if left out")}
