@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import subprocess
+
 import numpy as np
 import pytest
-from test_calculix import deck, solved
+from test_calculix import CCX, MISSING, deck, solved
 from test_solid_files import STEEL, abaqus, mesh_of
+from written_decks import brake_deck
 
 import stridula as st
 from stridula.bodies.solid_body import _assembled
@@ -111,3 +114,66 @@ def test_unlabelled_matrices_have_no_faces(tmp_path):
         files[name].write_text("\n".join([*entries, ""]), encoding="utf-8")
     with pytest.raises(ValueError, match="be left out where files do not name the nodes of their rows"):
         st.ReducedBody.read(**files, faces=["end"])
+
+
+# The brake of the tutorial, with pads from matrices of CalculiX.
+
+
+def flat(part):
+    """Return a pad as a deck of CalculiX in metres, held along the disc at its back, for its matrices."""
+    mesh = part.mesh
+    lines = ["*NODE", *(f"{k + 1}, {x:.12g}, {y:.12g}, {z:.12g}" for k, (x, y, z) in enumerate(mesh.nodes.tolist()))]
+    for name, material in part.materials.items():
+        lines.append(f"*ELEMENT, TYPE=C3D20, ELSET={name}")
+        for element in mesh.volumes[name]:
+            row = [element + 1, *(mesh.elements[element] + 1)]
+            lines += [", ".join(map(str, row[:11])) + ",", ", ".join(map(str, row[11:]))]
+        lines += [f"*MATERIAL, NAME=M{name}", "*ELASTIC", f"{material.young!r}, {material.poisson!r}"]
+        lines += ["*DENSITY", f"{material.density!r}", f"*SOLID SECTION, ELSET={name}, MATERIAL=M{name}"]
+    for name in ("RUB", "BACK"):
+        lines += [f"*NSET, NSET={name}", *(str(node + 1) for node in mesh.nodes_of(name))]
+    steps = ["*BOUNDARY", "BACK, 1", "BACK, 3", "*STEP", "*FREQUENCY, SOLVER=MATRIXSTORAGE", "1", "*END STEP", ""]
+    return "\n".join([*lines, *steps])
+
+
+def stability_of(disc, pads):
+    turning = ((0.0, 1.0, 0.0), (0.0, 0.0, 0.0), 20.0)
+    faces = [
+        st.SurfaceContact(pad, "RUB", disc, face, st.Coulomb(0.4), stiffness=1e11, turning=turning, name=pad.name)
+        for pad, face in zip(pads, ("UPPER", "LOWER"), strict=True)
+    ]
+    loads = [st.Force(pad.at("push"), y=way * 1e3) for pad, way in zip(pads, (-1.0, 1.0), strict=True)]
+    theory = st.sliding_stability(st.System(faces, loads))
+    slow = theory.frequency.values < 1.2e4
+    return theory.normal_force.values, theory.frequency.values[slow], theory.growth_rate.values[slow]
+
+
+def test_a_brake_with_pads_of_calculix_is_that_of_the_deck(tmp_path):
+    if CCX is None:
+        pytest.skip(MISSING)
+    path = tmp_path / "brake.inp"
+    path.write_text(brake_deck(), encoding="utf-8")
+    disc_part, *pad_parts = st.read_parts(path, scale=1e-3).values()
+    disc = st.SolidBody(
+        disc_part.mesh, disc_part.materials, fixed=["HUB"], cutoff=9e3, damping=0.004,
+        contact_faces={"UPPER": 48, "LOWER": 48}, name="disc",
+    )  # fmt: skip
+    solids, reduced = [], []
+    for part in pad_parts:
+        mesh, words = part.mesh, {"cutoff": 9e3, "damping": 0.004, "name": part.name}
+        back = mesh.nodes_of("BACK")
+        middle = mesh.nodes[back].mean(axis=0)
+        node = int(back[np.argmin(np.linalg.norm(mesh.nodes[back] - middle, axis=1))])
+        solids.append(
+            st.SolidBody(mesh, part.materials, {"push": node}, fixed={"BACK": "xz"}, contact_faces={"RUB": 12}, **words)
+        )
+        job = tmp_path / f"{part.name}.inp"
+        job.write_text(flat(part), encoding="utf-8")
+        done = subprocess.run([CCX, part.name], cwd=tmp_path, capture_output=True, text=True)
+        assert "Job finished" in done.stdout, done.stdout[-2000:]
+        push = {"push": (None, (node + 1, 2), None)}
+        reduced.append(st.ReducedBody.read(job.with_suffix(".sti"), mesh=job, points=push, faces={"RUB": 12}, **words))
+    expected, found = stability_of(disc, solids), stability_of(disc, reduced)
+    assert (expected[2] > 100.0).any()
+    for ours, theirs in zip(found, expected, strict=True):
+        np.testing.assert_allclose(ours, theirs, rtol=1e-4, atol=1e-2)
