@@ -148,6 +148,12 @@ def test_sets_of_the_assembly_keep_their_names_beside_those_of_a_part(tmp_path):
     assert "PAD-UPPER.RUB" in part.mesh.faces
 
 
+def test_a_group_of_faces_and_nodes_is_named_once(tmp_path):
+    mesh = st.SolidMesh.read(written(tmp_path, CUBE + "*NSET, NSET=BASE\n1, 2, 3, 4\n"))
+    assert "BASE" in mesh.faces
+    assert repr(mesh) == "SolidMesh(8 nodes, 1 hexahedra of 8 nodes, groups ALL, BASE)"
+
+
 @pytest.mark.parametrize(
     ("nodes", "name"), [("1, 2, 3, 4", "BASE"), ("1, 2, 3", "surface BASE"), ("1, 2, 3, 4, 5", "surface BASE")]
 )

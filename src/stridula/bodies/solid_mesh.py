@@ -376,7 +376,7 @@ class SolidMesh:
         return hash(self._digest)
 
     def __repr__(self) -> str:
-        names = listed([*self.volumes, *self.faces, *self.node_sets])
+        names = listed(dict.fromkeys([*self.volumes, *self.faces, *self.node_sets]))
         return f"SolidMesh({len(self.nodes)} nodes, {len(self.elements)} {self.element_kind.words}, groups {names})"
 
     def __reduce__(self) -> tuple[Any, ...]:
