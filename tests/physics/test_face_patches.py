@@ -10,10 +10,12 @@ import pytest
 import scipy.sparse.linalg
 
 import stridula as st
+from stridula.bodies import solid_body
 from stridula.bodies.face_patches import patched
 from stridula.bodies.solid_body import _assembled
 from stridula.bodies.solid_places import face_mean
 from stridula.bodies.sparse_reduction import COMPLIANCE
+from stridula.doubtful import DoubtfulValue
 from stridula.linear.equilibrium import find_equilibrium
 from stridula.linear.structure import Structure
 
@@ -200,6 +202,28 @@ def test_the_usual_division_is_the_points_of_integration_if_they_are_few():
 def test_divisions_that_are_refused(given, words):
     with pytest.raises(ValueError, match=words):
         st.SolidBody(plate(0), LINING, cutoff=2e4, contact_faces=given)
+
+
+def test_bodies_beyond_the_memory_are_refused_before_the_work(monkeypatch):
+    plated = body(plate(0), 24)
+    monkeypatch.setattr(solid_body, "available_memory", lambda: 1e6)
+    with pytest.raises(
+        ValueError, match=r"contact_faces must need less memory than there is, got some .* for 72 residual"
+    ):
+        plated.modes()
+
+
+def test_long_work_is_mentioned_before_it_begins(monkeypatch):
+    """With a limit so low that a small body exceeds it."""
+    monkeypatch.setattr(solid_body, "LONG", 1e-3)
+    with pytest.warns(DoubtfulValue, match=r"75 residual shapes of \d+ degrees of freedom take some .* min and .* GiB"):
+        body(plate(0), 25).modes()
+
+
+def test_more_points_than_can_be_marched_are_mentioned():
+    plated = body(plate(0, divisions=(4, 3, 1)), 300)
+    with pytest.warns(DoubtfulValue, match=r"\d+ points of 'surface': a second of motion with 120 takes minutes"):
+        st.SurfaceContact(plated, "sole", st.RigidTrack(1.0))
 
 
 def test_gaps_of_concentric_surfaces_are_means():

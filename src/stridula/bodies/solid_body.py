@@ -18,6 +18,7 @@ import scipy.sparse
 from ..arrays import Array
 from ..checks import ArgumentError, at_most, choice, count, instance, listed
 from ..declared import FREQUENCY, Frequency, Own
+from ..doubtful import warn_of
 from ..memory import GIB, available_memory
 from ..ordinary import of_ordinary_size
 from . import sparse_reduction
@@ -47,6 +48,9 @@ RIGID = 1e-9
 # Memory [bytes] of the factors of a body of n degrees of freedom over n^(4/3), measured from 36 000 to 109 000, and
 # arrays of the size of all residual shapes that exist at a time.
 FACTOR, ARRAYS = 700.0, 6.0
+# Time of a residual shape over the memory of the factors [s/byte], measured on one core, and the time from which it is
+# mentioned [s].
+PER_BYTE, LONG = 3.5e-10, 90.0
 # Expected modes over the most that are searched for, from which a search is not begun.
 FAR = 4.0
 
@@ -481,14 +485,22 @@ def _surface(body: SolidBody, largest: float) -> PointSurface:
 
 
 def _check_memory(size: int, shapes: int) -> None:
-    """Raise ValueError if factors and residual shapes exceed the memory of the machine, before they are computed."""
-    needed = FACTOR * size ** (4.0 / 3.0) + 8.0 * ARRAYS * size * shapes
+    """Raise ValueError if factors and residual shapes exceed the memory of the machine, before they are computed.
+
+    Much time is mentioned in a warning.
+    """
+    factor = FACTOR * size ** (4.0 / 3.0)
+    needed = factor + 8.0 * ARRAYS * size * shapes
     if needed > available_memory():
         got = (
             f"some {needed / GIB:.2g} of {available_memory() / GIB:.2g} GiB for {shapes} residual shapes of "
             f"{size} degrees of freedom; give fewer points, such as {{'rub': 30}}, or a coarser mesh"
         )
         raise ArgumentError("contact_faces", "need less memory than there is", got=got)
+    seconds = PER_BYTE * factor * shapes
+    if seconds > LONG:
+        words = f"{shapes} residual shapes of {size} degrees of freedom take some {seconds / 60.0:.1g} min and"
+        warn_of([f"{words} {needed / GIB:.1g} GiB; give contact_faces fewer points, such as {{'rub': 30}}"])
 
 
 def _check_modes(body: SolidBody, mass: float) -> None:
