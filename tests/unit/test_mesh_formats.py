@@ -265,6 +265,23 @@ def test_other_datasets_and_elements_are_counted(tmp_path):
     ]
 
 
+UNITS = """    -1
+   164
+         {}mm (newton)                 2
+   {}D+00   1.0D+00   1.0D+00
+   2.7315D+02
+    -1
+"""
+
+
+@pytest.mark.parametrize(("factor", "words"), [("1.0", ""), ("1000.0", "1 unit of length of 0.001 m, see scale")])
+def test_units_other_than_metres_are_mentioned(factor, words, tmp_path):
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        read_unv(tmp_path, UNITS.format(5, factor) + BRICK)
+    assert [str(one.message).partition("not read: ")[2] for one in caught] == ([words] if words else [])
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [

@@ -40,8 +40,10 @@ BEAMS = (11, 21, 22, 23, 24, 25)
 # Members of groups, and the numbers for each in a group.
 NODES, ELEMENTS = 7, 8
 WIDE_GROUPS, NARROW_GROUPS = (2435, 2452, 2467, 2477), (2417, 2429, 2430, 2432)
-# Units, headers and files within.
-WITHOUT_MESH = (151, 164)
+# Header.
+WITHOUT_MESH = ("151",)
+# Relative difference of a factor of units from 1 that is due to rounding.
+ROUNDING = 1e-6
 
 
 def read_universal(path: str | os.PathLike[str]) -> Deck:
@@ -147,14 +149,21 @@ class _Model:
             "18": self._read_other_systems,
             **dict.fromkeys(("781", "2411"), self._read_nodes),
             **dict.fromkeys(("780", "2412"), self._read_elements),
+            "164": self._read_units,
             "2420": self._read_systems,
             **dict.fromkeys(map(str, (*WIDE_GROUPS, *NARROW_GROUPS)), self._read_groups),
         }
         name = one.name.split()[0] if one.name.split() else ""
         if name in readers:
             readers[name](one)
-        elif name not in map(str, WITHOUT_MESH):
+        elif name not in WITHOUT_MESH:
             self.left_out[f"dataset {name[:20]}"] += 1
+
+    def _read_units(self, one: _Dataset) -> None:
+        """Mention another unit of length than the metre: values in it are divided by the factor given."""
+        factor = one.numbers(1, 1)[0]
+        if factor > 0.0 and abs(factor - 1.0) > ROUNDING:
+            self.left_out[f"unit of length of {1.0 / factor:.6g} m, see scale"] += 1
 
     def deck(self) -> Deck:
         """Return the deck of all datasets."""
