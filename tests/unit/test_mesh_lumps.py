@@ -169,6 +169,18 @@ def test_rotary_inertia_is_counted_beside_its_mass(tmp_path):
     assert (dict(part.masses), said) == ({"node 7": 250.0}, ["1 rotary inertia of a CONM2"])
 
 
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("CELAS2,11,40.,8,2,,,.02\n", "1 structural damping of a CELAS2"),
+        ("PELAS,5,40.,.02\nCELAS1,11,5,8,2\n", "1 structural damping of a PELAS"),
+    ],
+)
+def test_structural_damping_is_counted_beside_its_spring(text, words, tmp_path):
+    (part,), said = _nastran(tmp_path, GRIDS + HEXA + text)
+    assert ([one.stiffness for one in part.springs], said) == ([40e3], [words])
+
+
 def test_the_command_prints_them(stridula, tmp_path):
     (tmp_path / "deck.inp").write_text(NODES + SOLID + MASS + SPRING, encoding="latin-1")
     out = " ".join(stridula("mesh", "deck.inp", "--scale", "1 mm")[1].replace("│", " ").split())

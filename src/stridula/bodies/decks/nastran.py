@@ -286,6 +286,8 @@ class _Model:
         for at in (0, 4):
             if card.text(at):
                 self.stiffness[card.whole(at, "PID")] = card.number(at + 1, "K", np.nan)
+                if card.number(at + 2, "GE", 0.0):
+                    self.left_out["structural damping of a PELAS"] += 1
 
     def _mass_lumps(self) -> Iterator[Lump]:
         """Yield the masses at grids; those beside their grid are counted."""
@@ -315,6 +317,8 @@ class _Model:
             ):
                 self.left_out[card.name] += 1
                 continue
+            if card.name == "CELAS2" and card.number(6, "GE", 0.0):
+                self.left_out["structural damping of a CELAS2"] += 1
             points = tuple(self.grids.number[grid] for grid in given)
             direction = tuple(np.eye(3)[ways[0] - 1].tolist())
             yield Lump(card.name, points, tuple(f"node {grid}" for grid in given), stiffness, direction)
