@@ -395,9 +395,9 @@ def check_measures() -> None:
 
 
 def copy_examples() -> None:
-    """Copy the scripts of the galleries with their headers, and forget those that are no more."""
+    """Copy the scripts of the galleries with their headers and decks, and forget those that are no more."""
     for name, folder in GALLERIES.items():
-        sources = {path.name: path for path in (*folder.glob("*.py"), *folder.glob("*.rst"))}
+        sources = {path.name: path for path in (*folder.glob("*.py"), *folder.glob("*.rst"), *folder.glob("*.inp"))}
         for old in (GENERATED / "examples" / name).glob("*"):
             if old.name not in sources:
                 old.unlink()

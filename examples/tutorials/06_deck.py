@@ -3,7 +3,8 @@ A brake from a deck
 ===================
 
 A disc between two pads, as Abaqus/CAE writes an assembly: parts, their instances, materials and surfaces in one deck,
-in millimetres and tonnes. The disc turns, and both pads are pressed on it.
+:download:`brake.inp </_generated/examples/tutorials/brake.inp>`, in millimetres and tonnes. The disc turns, and both
+pads are pressed on it.
 """
 
 # %%
