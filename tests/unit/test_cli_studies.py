@@ -239,6 +239,19 @@ def test_the_calibrated_scenario_reruns_the_best_set(stridula, tmp_path):
         assert f"{value:.5g}" in re.search(rf"^ *{name} .*$", out, re.MULTILINE)[0]
 
 
+def test_a_search_is_kept_and_read_again(stridula, tmp_path):
+    arguments = ("--vary", "friction=1.2:1.8", "--target", "equilibrium=held", *SHORT, "--population", "5")
+    arguments += ("--generations", "2", "--search")
+    code, out, err = stridula("calibrate", "squeal", *arguments, str(tmp_path / "search.nc"))
+    assert (code, "generation 0 of 2" in err) == (0, True)
+    # A finished search is read, not made again.
+    again = stridula("calibrate", "squeal", *arguments, str(tmp_path / "search.nc"))
+    assert again == (0, out, "")
+    code, _, err = stridula("calibrate", "squeal", *arguments, str(tmp_path / "search.csv"))
+    assert (code, err.count("\n")) == (2, 1)
+    assert "--search must" in err
+
+
 def test_the_calibrated_scenario_gives_the_same_numbers(stridula, tmp_path):
     ranges = {"friction": (0.1, 0.6), "slider.length": ("0.5 m", "0.6 m")}
     found = st.calibrate(

@@ -438,6 +438,9 @@ def calibrate_(
     generations: Annotated[int, typer.Option(metavar="N", help="Largest number of generations.")] = 50,
     seed: Annotated[int, typer.Option(metavar="S", help="Seed of the search.")] = 0,
     out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the best set as a scenario, TOML.")] = None,
+    search: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Keep the search, NetCDF; the same command resumes it.")
+    ] = None,
     workers: Annotated[int | None, typer.Option(metavar="N", help="Parts computed at a time.")] = None,
 ) -> int:
     """Search for parameters whose run meets given targets; exit with 1 if a target is not met."""
@@ -450,6 +453,7 @@ def calibrate_(
         target,
         _pairs(set_ or []),
         out,
+        search=search,
         duration=duration,
         population=population,
         generations=generations,

@@ -34,9 +34,12 @@ def calibrate_scenario(
     targets: list[str],
     overrides: dict[str, Any],
     out: str | None,
+    search: str | None = None,
     **options: Any,
 ) -> bool:
     """Search for parameters that meet targets, print and write them, and return whether all targets are met."""
+    if search is not None:
+        check_ending("--search", search, (".nc",), "search")
     if out is not None:
         check_ending("--out", out, (".toml",), "scenario")
         check_writable(out)
@@ -52,7 +55,7 @@ def calibrate_scenario(
         )
 
     try:
-        found = calibrate(name, ranges, aimed, overrides=overrides, watchers=[follow], **options)
+        found = calibrate(name, ranges, aimed, overrides=overrides, out=search, watchers=[follow], **options)
     except KeyboardInterrupt:
         words = ", ".join(f"{key}={value}" for key, value in best.items()) or "nothing yet"
         raise Stopped(f"interrupted; best so far: {words}", INTERRUPTED) from None
