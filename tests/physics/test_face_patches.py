@@ -174,6 +174,14 @@ def test_names_and_places_of_patches():
     assert face.areas.sum() == pytest.approx(LONG * WIDE)
 
 
+def test_a_point_may_not_have_the_name_of_a_patch():
+    with pytest.raises(
+        ValueError, match=r"points must not have the name of a contact point of a face, got 'sole\[3\]'"
+    ):
+        body(plate(0), 24, points={"sole[3]": 0})
+    assert body(plate(0), 24, points={"sole[300]": 0}).at("sole[300]").place == pytest.approx(plate(0).nodes[0])
+
+
 def test_points_of_a_face_are_short_in_print():
     assert repr(body(plate(0), 24).face_points("sole")) == "FacePoints(24 points, 0.0024 m2)"
 

@@ -144,6 +144,16 @@ def test_faces_that_are_refused(words, message):
         st.MatrixFace(**arguments | words)
 
 
+def test_points_beside_faces():
+    mass, stiffness, degrees = matrices()
+    faces = {"rub": st.MatrixFace(PLACED, "bottom", degrees, 12)}
+    with pytest.raises(ValueError, match=r"points must not have the name of a contact point of a face, got 'rub\[2\]'"):
+        st.ReducedBody(mass, stiffness, {"rub[2]": (0, 1, 2)}, faces=faces)
+    pad = st.ReducedBody(mass, stiffness, {"rub[200]": (0, 1, 2)}, faces=faces)
+    assert pad.place("rub[200]") is None
+    assert pad.place("rub[2]") is not None
+
+
 def test_bodies_with_faces_that_are_refused(tmp_path):
     mass, stiffness, degrees = matrices()
     face = st.MatrixFace(PLACED, "bottom", degrees + 10_000 * (degrees >= 0), 12)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from numbers import Integral
@@ -16,7 +16,8 @@ import scipy.spatial
 from ..arrays import Array
 from ..checks import ArgumentError, choice, count
 from ..long_tasks import check_wanted
-from .solid_places import FacePoints, Sampled, sampled
+from .solid_overlays import half
+from .solid_places import FacePoints, Sampled, face_points, face_values, sampled
 
 if TYPE_CHECKING:
     from .solid_mesh import SolidMesh
@@ -74,9 +75,35 @@ class Patches:
         return np.asarray(sums / self.points.area)
 
 
-def usual_division(mesh: SolidMesh, name: str) -> int | None:
-    """Return the approximate number of patches of a face, None for its points of integration, if they are few."""
-    return None if len(mesh.faces[name]) * len(mesh.element_kind.faces[0]) <= FEW_POINTS else USUAL
+def patches_of(mesh: SolidMesh, name: str, division: Division | None) -> Patches | None:
+    """Return the patches of a face; None if its contact points are those of integration, by default if they are few."""
+    if division is None:
+        division = "integration" if len(mesh.faces[name]) * len(mesh.element_kind.faces[0]) <= FEW_POINTS else USUAL
+    return None if isinstance(division, str) else patched(mesh, name, division)
+
+
+def points_of(mesh: SolidMesh, name: str, division: Division | None) -> FacePoints:
+    """Return the contact points of a face: places, areas and normals."""
+    patches = patches_of(mesh, name, division)
+    return face_points(mesh, name) if patches is None else patches.points
+
+
+def means_of(mesh: SolidMesh, name: str, division: Division | None) -> Any:
+    """Return the share of each node in the displacement of each contact point, sparse, shape (points, nodes)."""
+    patches = patches_of(mesh, name, division)
+    return face_values(mesh, name) if patches is None else patches.mean
+
+
+def name_of_point(face: str, number: int) -> str:
+    """Return the name of a contact point of a face by its number from 0."""
+    return f"{face}[{number + 1}]"
+
+
+def point_named(position: str, faces: Collection[str]) -> tuple[str, int] | None:
+    """Return the face and the number from 0 of a contact point by its name, such as "rub[7]"; None for other names."""
+    face, _, number = position.removesuffix("]").rpartition("[")
+    is_one = face in faces and number.isdecimal() and position.endswith("]") and int(number) > 0
+    return (face, int(number) - 1) if is_one else None
 
 
 def divided(given: Any, mesh: SolidMesh, word: str) -> dict[str, Division | None]:
@@ -153,10 +180,7 @@ def _joined(nodes: int, cell: Array, found: list[Sampled]) -> Patches:
     owner = _without_slivers(np.unique(cell, return_inverse=True)[1].ravel(), place, area)
     count = int(owner.max()) + 1
     sums = np.bincount(owner, area, minlength=count)
-    centre, mean_normal = (
-        np.stack([np.bincount(owner, area * one[:, k], minlength=count) for k in range(3)], axis=1)
-        for one in (place, normal)
-    )
+    centre, mean_normal = _moment(owner, area, place), _moment(owner, area, normal)
     points = FacePoints(centre / sums[:, None], sums, mean_normal / np.linalg.norm(mean_normal, axis=1)[:, None])
     columns = np.concatenate([np.broadcast_to(one.nodes, one.values.shape).ravel() for one in found])
     values = np.concatenate([(one.area[:, None] * one.values).ravel() for one in found])
@@ -164,6 +188,11 @@ def _joined(nodes: int, cell: Array, found: list[Sampled]) -> Patches:
     rows = np.repeat(owner, widths)
     mean = scipy.sparse.csr_array((values / sums[rows], (rows, columns)), shape=(count, nodes))
     return Patches(points, mean, FacePoints(place, area, normal), owner)
+
+
+def _moment(owner: Array, area: Array, vectors: Array) -> Array:
+    """Return the integral of vectors at samples over each cell, shape (cells, 3)."""
+    return np.stack([np.bincount(owner, area * column) for column in vectors.T], axis=1)
 
 
 def _charts(area: Array, normal: Array) -> list[Array]:
@@ -263,32 +292,19 @@ def _between(polygon: Array, column: int, lines: Array) -> list[tuple[int, Array
     for number in range(low, high + 1):
         part = polygon
         if number > low:
-            part = _half(part, column, lines[number], 1.0)
+            part = half(part, part[:, column] - lines[number])
         if number < high:
-            part = _half(part, column, lines[number + 1], -1.0)
+            part = half(part, lines[number + 1] - part[:, column])
         if len(part) > 2:
             parts.append((number, part))
     return parts
-
-
-def _half(polygon: Array, column: int, line: float, sign: float) -> Array:
-    """Return the part of a convex polygon on one side of a line (Sutherland & Hodgman 1974)."""
-    inside = sign * (polygon[:, column] - line)
-    kept = []
-    for k in range(len(polygon)):
-        before, here = float(inside[k - 1]), float(inside[k])
-        if before * here < 0.0:
-            kept.append(polygon[k - 1] + before / (before - here) * (polygon[k] - polygon[k - 1]))
-        if here >= 0.0:
-            kept.append(polygon[k])
-    return np.array(kept).reshape(-1, polygon.shape[1])
 
 
 def _without_slivers(owner: Array, place: Array, area: Array) -> Array:
     """Return the patch of each sample, after small cells have been joined to the patch with the nearest centre."""
     count = int(owner.max()) + 1
     size = np.bincount(owner, area, minlength=count)
-    moment = np.stack([np.bincount(owner, area * place[:, k], minlength=count) for k in range(3)], axis=1)
+    moment = _moment(owner, area, place)
     least, left, new = SLIVER * float(np.median(size)), np.ones(count, dtype=bool), np.arange(count)
     while left.sum() > 1:
         smallest = int(np.argmin(np.where(left, size, np.inf)))

@@ -5,17 +5,16 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError, choice, counted, instance
 from ..doubtful import warn_of
-from .face_patches import Division, Patches, checked_division, patched, usual_division
+from .face_patches import Division, Patches, checked_division, means_of, patches_of, points_of
 from .matrix_input import numbers
 from .solid_mesh import SolidMesh
-from .solid_places import FacePoints, face_points, face_values
+from .solid_places import FacePoints
 
 # Largest share of a node in a mean that is due to rounding.
 ROUNDING = 1e-12
@@ -60,7 +59,7 @@ class MatrixFace:
         degrees = given.astype(np.int64)
         degrees.flags.writeable = False
         object.__setattr__(self, "degrees", degrees)
-        mean = self._mean
+        mean = means_of(self.mesh, self.face, self.division)
         # Nodes of an element beside its face have no share, up to rounding.
         nodes = np.unique(mean.indices[np.abs(mean.data) > ROUNDING])
         lost = int(np.sum((degrees[nodes] < 0).all(axis=1)))
@@ -73,13 +72,12 @@ class MatrixFace:
     @property
     def patches(self) -> Patches | None:
         """Its patches; None if its contact points are those of integration."""
-        division = self.division or usual_division(self.mesh, self.face)
-        return None if division is None or isinstance(division, str) else patched(self.mesh, self.face, division)
+        return patches_of(self.mesh, self.face, self.division)
 
     @property
     def points(self) -> FacePoints:
         """Its contact points: places, areas and normals."""
-        return face_points(self.mesh, self.face) if self.patches is None else self.patches.points
+        return points_of(self.mesh, self.face, self.division)
 
     def rows(self, size: int) -> Array:
         """Return the displacement of its contact points from the degrees of freedom, shape (points, 3, size)."""
@@ -87,19 +85,13 @@ class MatrixFace:
             raise ArgumentError(
                 "degrees", f"be numbers of degrees of freedom from 0 to {size - 1}", got=int(self.degrees.max())
             )
-        mean = self._mean.tocoo()
+        mean = means_of(self.mesh, self.face, self.division).tocoo()
         rows = np.zeros((mean.shape[0], 3, size))
         for direction in range(3):
             column = self.degrees[mean.col, direction]
             kept = column >= 0
             np.add.at(rows, (mean.row[kept], direction, column[kept]), mean.data[kept])
         return rows
-
-    @property
-    def _mean(self) -> Any:
-        """Share of each node in the displacement of each contact point, sparse, shape (points, nodes)."""
-        patches = self.patches
-        return face_values(self.mesh, self.face) if patches is None else patches.mean
 
     @cached_property
     def digest(self) -> bytes:

@@ -18,7 +18,7 @@ from ..checks import ArgumentError, choice, instance, listed, positive
 from ..ordinary import of_ordinary_size
 from .cards import FEW
 from .damping import DampingLaw, Rayleigh, checked_damping
-from .face_patches import Division, Patches
+from .face_patches import Division, Patches, name_of_point, point_named
 from .long_searches import search_told
 from .matrix_arguments import faces_of, from_container, from_matrices
 from .matrix_faces import MatrixFace
@@ -341,15 +341,15 @@ class ReducedBody(NamedPoints):
 
     def contact_point(self, name: str, number: int) -> BodyPoint:
         """Return a contact point of a face by its number from 0."""
-        return self.at(f"{name}[{number + 1}]")
+        return self.at(name_of_point(name, number))
 
     def place(self, position: str) -> Array | None:
         """Return the world place of a contact point of a face [m], shape (3,); None for other points."""
         self.check_position(position)
-        name, _, number = position.removesuffix("]").rpartition("[")
-        if name not in self.faces or not number.isdecimal():
+        found = point_named(position, self.faces)
+        if found is None or found[1] >= len(self.face_points(found[0]).area):
             return None
-        return np.array(self.faces[name].points.place[int(number) - 1])
+        return np.array(self.face_points(found[0]).place[found[1]])
 
     @property
     def has_modes_at_hand(self) -> bool:
@@ -418,7 +418,11 @@ class ReducedBody(NamedPoints):
         instance("points", self.points, Mapping)
         found = dict(self.points)
         for name, face in self.faces.items():
-            found |= {f"{name}[{k + 1}]": rows for k, rows in enumerate(face.rows(size))}
+            for number, rows in enumerate(face.rows(size)):
+                point = name_of_point(name, number)
+                # Copies of a body have the same ones already.
+                if not np.array_equal(found.setdefault(point, rows), rows):
+                    raise ArgumentError("points", "not have the name of a contact point of a face", point)
         return found
 
     @property

@@ -26,7 +26,7 @@ from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .cards import FEW
 from .damping import DampingLaw, checked_damping
 from .drawn_surfaces import DrawnSurface, surface_of_mesh
-from .face_patches import Division, Patches, divided, patched, usual_division
+from .face_patches import Division, Patches, divided, means_of, name_of_point, patches_of, point_named, points_of
 from .factorisation import dissection
 from .long_searches import search_told
 from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
@@ -36,7 +36,7 @@ from .named_points import NamedPoints
 from .sections import Material
 from .solid_elements import assembled
 from .solid_mesh import Face, SolidMesh, place_of
-from .solid_places import FacePoints, face_mean, face_points, face_values, located
+from .solid_places import FacePoints, face_mean, located
 from .solid_surfaces import cut_faces
 from .sparse_reduction import SparseProblem, modes_of, reduce_sparse
 
@@ -149,6 +149,9 @@ class SolidBody(NamedPoints):
         self._set("points", MappingProxyType(_points(self.points, self.mesh)))
         self._set("fixed", MappingProxyType(_fixed(self.fixed, self.mesh)))
         self._set("contact_faces", MappingProxyType(divided(self.contact_faces, self.mesh, "contact_faces")))
+        for name in self.points:
+            if self._patch(name) is not None:
+                raise ArgumentError("points", "not have the name of a contact point of a face", name)
         size = int(self._free.sum())
         if not size:
             raise ArgumentError("fixed", "leave something free", got="all nodes held")
@@ -226,19 +229,17 @@ class SolidBody(NamedPoints):
         They are those of `contact_faces`: points of integration, or the centres of patches.
         """
         choice("name", name, self.face_names or ("none",))
-        patches = self.patches(name)
-        return face_points(self.mesh, name) if patches is None else patches.points
+        return points_of(self.mesh, name, self._division(name))
 
     def patches(self, name: str) -> Patches | None:
         """Return the patches of a named part of its surface; None if its contact points are those of integration."""
-        division = self.contact_faces.get(name) or usual_division(self.mesh, name)  # type: ignore[union-attr]
-        return None if division is None or isinstance(division, str) else patched(self.mesh, name, division)
+        return patches_of(self.mesh, name, self._division(name))
 
     def contact_point(self, name: str, number: int) -> BodyPoint:
         """Return a contact point of a named part of its surface by its number from 0."""
         if self.patches(name) is None:
             return self.at(self.face_points(name).place[number].tolist())
-        return self.at(f"{name}[{number + 1}]")
+        return self.at(name_of_point(name, number))
 
     def at(self, position: str | Sequence[float]) -> BodyPoint:
         """Return the point of a name, the mean over a named face, or the point at (x, y, z) within the mesh [m].
@@ -393,15 +394,17 @@ class SolidBody(NamedPoints):
         for array in (self._reduction.shapes,) if "_reduction" in state else ():
             array.flags.writeable = False
 
+    def _division(self, name: str) -> Division | None:
+        """Return the division of a face into contact points, None if none is given."""
+        return self.contact_faces.get(name)  # type: ignore[union-attr]
+
     def _patch(self, position: str) -> tuple[Patches, int] | None:
         """Return the patches of a face and a number from 0 if a position names one of them, such as "rub[7]"."""
-        name, _, number = position.removesuffix("]").rpartition("[")
-        if name not in self.mesh.faces or not number.isdecimal() or not position.endswith("]"):
+        found = point_named(position, self.mesh.faces)
+        patches = None if found is None else self.patches(found[0])
+        if found is None or patches is None or found[1] >= len(patches.points.area):
             return None
-        patches = self.patches(name)
-        if patches is None or not 1 <= int(number) <= len(patches.points.area):
-            return None
-        return patches, int(number) - 1
+        return patches, found[1]
 
     @property
     def _free(self) -> Array:
@@ -526,13 +529,10 @@ def _expected(body: SolidBody, mass: float) -> float:
 
 def _on_faces(body: SolidBody) -> tuple[Array, Array]:
     """Return unit forces at the points of integration and on the patches of faces, along x, y and z each."""
-    at_points, on_patches = [], []
+    at_points, on_patches = list[Any](), list[Any]()
     for name in body.contact_faces:
-        patches = body.patches(name)
-        if patches is None:
-            at_points.append(face_values(body.mesh, name))
-        else:
-            on_patches.append(patches.mean)
+        found = at_points if body.patches(name) is None else on_patches
+        found.append(means_of(body.mesh, name, body._division(name)))
     return _along_axes(body, at_points), _along_axes(body, on_patches)
 
 

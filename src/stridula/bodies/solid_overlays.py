@@ -71,20 +71,24 @@ def _flat(face: Face, mesh: SolidMesh, axes: Array) -> list[Array]:
 
 def _clipped(polygon: Array, window: Array) -> Array:
     """Return the part of a convex polygon within another one (Sutherland & Hodgman 1974)."""
-    found = list(polygon)
     for start, end in zip(window, np.roll(window, -1, axis=0), strict=True):
-        inside = [_cross(end - start, one - start) for one in found]
-        clipped = []
-        for k, (one, side) in enumerate(zip(found, inside, strict=True)):
-            before, other = found[k - 1], inside[k - 1]
-            if side * other < 0.0:
-                clipped.append(before + other / (other - side) * (one - before))
-            if side >= 0.0:
-                clipped.append(one)
-        found = clipped
-        if not found:
-            break
-    return np.array(found).reshape(-1, 2)
+        polygon = half(polygon, np.array([_cross(end - start, one - start) for one in polygon]))
+    return polygon
+
+
+def half(polygon: Array, inside: Array) -> Array:
+    """Return the part of a convex polygon on one side of a line, from signed distances of its corners, inside above 0.
+
+    Corners may have further columns, which are linear along the sides.
+    """
+    kept = []
+    for k in range(len(polygon)):
+        before, here = float(inside[k - 1]), float(inside[k])
+        if before * here < 0.0:
+            kept.append(polygon[k - 1] + before / (before - here) * (polygon[k] - polygon[k - 1]))
+        if here >= 0.0:
+            kept.append(polygon[k])
+    return np.array(kept).reshape(-1, polygon.shape[1])
 
 
 def _cross(first: Array, second: Array) -> float:
