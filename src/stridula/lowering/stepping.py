@@ -10,16 +10,17 @@ from ..arrays import Array
 from .assembly import Assembly
 from .schemes import Coefficients, Scheme
 
-# Recurrence of residual shapes: share of an increment kept, stiffness of a step. They respond without a lag that would
-# damp contacts, like shapes with a mass that vanishes with the step: a quarter of a period per step, decayed in twenty.
-KEPT, STIFFNESS = 0.8, 1.8
+# Recurrence of residual shapes: share of an increment kept, stiffness of a step. They act like shapes with a mass that
+# vanishes with the step: four steps are a period. A share (1 - 0.98) / 1.98 of a step remains as a lag, which damps
+# contacts at first order.
+KEPT, STIFFNESS = 0.98, 1.98
 
 
 @dataclass(frozen=True)
 class Stepping:
     """A time scheme applied to the modes of a system.
 
-    Residual shapes follow forces within a few steps: ``b = 0.8``, ``r = l = 1.8``, in units of their stiffness.
+    Residual shapes follow forces within a few steps: ``b = 0.98``, ``r = l = 1.98``, in units of their stiffness.
 
     Attributes
     ----------
