@@ -7,6 +7,7 @@ from scipy.optimize import root
 
 import stridula as st
 from kernels.general_twin import curve
+from kernels.way_twin import changed
 
 SEPARATED, STICKING, SLIDING = 0, 1, 2
 SHARE = 1 - np.sqrt(0.5)
@@ -64,7 +65,8 @@ def on_bristles(law, before, slip, w, h, normal):
     if before.status == SEPARATED:
         past = 0.5 * bristles_ratio(law, z, begun / h)
     elif before.normal > 0:
-        grows = drive - (before.last - before.earlier) - pull @ before.tangential / before.normal
+        now = w[1:, 1:] * changed(normal, before.normal)
+        grows = drive - (before.last - before.earlier) - now @ before.tangential / before.normal
     u = begun - pull @ past - grows / 6
     squares = u @ u + drive @ drive
     pulled = (u @ pull @ u + drive @ pull @ drive) / squares if squares else np.trace(pull) / 2

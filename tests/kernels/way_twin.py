@@ -25,7 +25,7 @@ def on_its_way(laws, before, normal, gap, slip, strayed, own, h, let_go):
     pull, moved, last = own[1, 1] * normal, slip + own[1, 0] * normal, before.last_slip
     law, begun, drive = before.law, 0.5 * (last + moved), moved - last
     if not laws.set_valued(law):
-        return _with_state(laws, before, begun, drive, pull, moved, h)
+        return _with_state(laws, before, begun, drive, own[1, 1], normal, moved, h)
     held = laws.held_up_to(law, before.status == STICKING and not let_go)
     driven = (moved + strayed) / pull
     # Whether it sticks, and when it breaks, follows from the forces with which it would stick.
@@ -137,13 +137,19 @@ def _slide(way, u, begin, drive, sense):
     return later, past, 0.0
 
 
-def _with_state(laws, before, begun, drive, pull, moved, h):
+def changed(normal, last):
+    """The normal force to which the friction of the last step has changed: an impulse would not go on."""
+    return last + np.clip(normal - last, -min(normal, last), min(normal, last))
+
+
+def _with_state(laws, before, begun, drive, give, normal, moved, h):
     """The way under a law with internal state, in parts of a rule of two stages, each with its ratio at its end."""
-    law, state, past, grows = before.law, before.state, before.past, 0.0
+    law, state, past, grows, pull = before.law, before.state, before.past, 0.0, give * normal
     if before.status == SEPARATED:
         past = 0.5 * laws.ratio_with_state(law, state, begun / h)
     elif before.normal > 0:
-        grows = drive - (before.last_slip - before.earlier_slip) - pull * before.tangential / before.normal
+        now = give * changed(normal, before.normal)
+        grows = drive - (before.last_slip - before.earlier_slip) - now * before.tangential / before.normal
     u = begun - pull * past - grows / 6
     if isinstance(law, st.LuGre):
         change = (abs(drive) + pull * law.static) / (4 * law.velocity * h)

@@ -251,6 +251,17 @@ def parts_with_state(slip, drive, pull, law, laws, i, step):
     return int(min(count, float(MOST_PARTS)))
 
 
+@numba.njit(inline="always", **STRICT)
+def changed_to(normal, last):
+    """Return the normal force that the friction of the last step is taken to have changed to in this one.
+
+    A change that goes on is part of the growth of the drive; an impulse would not go on, so that a change counts for at
+    most the smaller of both forces.
+    """
+    most = min(normal, last)
+    return min(max(normal, last - most), last + most)
+
+
 @numba.njit(**STRICT)
 def ratio_with_state(normal, slip, w, law, laws, i, before, step):
     """Return the ratio of forces over a step under a law with internal state, its past part, and the new state.
@@ -266,7 +277,7 @@ def ratio_with_state(normal, slip, w, law, laws, i, before, step):
     if was == SEPARATED:
         past = 0.5 * state_ratio(law, laws, i, state, begun / step)
     elif before[4] > 0.0:
-        grows = drive - (last - before[2]) - pull * before[5] / before[4]
+        grows = drive - (last - before[2]) - w[3] * changed_to(normal, before[4]) * before[5] / before[4]
     slip_now = begun - pull * past - grows / 6.0
     count = parts_with_state(slip_now, drive, pull, law, laws, i, step)
     size, later, rest, velocity = 1.0 / count, 0.0, 0.0, slip_now / step

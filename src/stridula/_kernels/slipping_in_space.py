@@ -28,6 +28,7 @@ from .slipping import (
     STAGE,
     STICKING,
     STOPPED,
+    changed_to,
     moments,
     part_of,
     parts_with_state,
@@ -481,7 +482,8 @@ def ratio_with_state(normal, slips, w, law, laws, i, before, step):
         past = ratio_of_state(law, laws, i, state, (begun[0] / step, begun[1] / step))
         past = 0.5 * past[0], 0.5 * past[1]
     elif before[4] > 0.0:
-        dragged = times(pull, before[5])
+        share = changed_to(normal, before[4])
+        dragged = times((share * w[4], share * w[5], share * w[7], share * w[8]), before[5])
         grows = (
             drive[0] - (last[0] - earlier[0]) - dragged[0] / before[4],
             drive[1] - (last[1] - earlier[1]) - dragged[1] / before[4],
