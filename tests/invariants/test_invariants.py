@@ -18,6 +18,7 @@ import stridula as st
 from invariants.laws import violations
 from invariants.recipes import Foot, Recipe, Units, build, number, recipes, run_of
 from stridula._kernels import layout
+from stridula._kernels.law_columns import LAW_COLUMNS
 
 STEPS = 1000
 schemes = some.sampled_from(SCHEMES)
@@ -300,7 +301,7 @@ def test_harness_rejects_friction_with_the_wrong_sign():
     from stridula._kernels import contact as kernel
 
     law, step = st.Coulomb(0.4), 1e-4
-    numbers = np.array([[0.4] + [0.0] * (layout.LAW_PARAMETERS - 1)])
+    numbers = np.array([[0.4] + [0.0] * (LAW_COLUMNS - 1)])
 
     def record(sense):
         """A mass of 1 kg sliding at 1 m/s under 10 N, marched here with the kernel's solve."""

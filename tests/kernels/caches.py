@@ -11,7 +11,7 @@ from numba.core.caching import _CacheLocator
 import stridula as st
 from stridula._kernels import march
 
-KERNEL = "march.march"
+KERNEL, START = "march.march", "contacts.solve_closed"
 
 
 def incomplete_cache(folder: Path) -> Path:
@@ -21,7 +21,7 @@ def incomplete_cache(folder: Path) -> Path:
     """
     st.load_scenario("squeal", {"duration": "1 ms"}).simulate()
     stored = march.march._cache._cache_file._load_index()
-    (single,) = [file for (signature, *_), file in stored.items() if signature[1:3] == (types.none, types.none)]
+    (single,) = [file for (signature, *_), file in stored.items() if signature[1:4] == (types.none,) * 3]
     ignored = shutil.ignore_patterns("*.pyc", single)
     subfolder = _CacheLocator.get_suitable_cache_subpath(march.__file__)
     shutil.copytree(march.march.stats.cache_path, folder / subfolder, ignore=ignored)

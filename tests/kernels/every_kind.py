@@ -1,7 +1,7 @@
 """March a little of every kind of run and print, as JSON, the signatures that were compiled and loaded.
 
 A separate program, `python -m kernels.every_kind`, that starts with the numba cache only. With `alone` and `abreast` it
-makes only the two runs, or the two pairs of runs, that compile everything; with `other type` one run, and a call that
+makes only the runs, or the groups of runs, that compile everything; with `other type` one run, and a call that
 is not in the cache.
 """
 
@@ -20,12 +20,12 @@ from numba.core.dispatcher import Dispatcher
 from physics.cases import CASES, SCHEMES, STEP, pair, slider, track, transverse
 
 import stridula as st
-from kernels.systems import AGING, BELT, SYSTEMS, WEAK, oscillator, pad_on
+from kernels.systems import AGING, BELT, SYSTEMS, WEAK, block_on_a_plane, oscillator, pad_on
 from stridula import _kernels
 
 STEPS = 40
 # The first and the end of the runs of each word.
-SPANS = {"": (0, None), "alone": (0, 2), "abreast": (2, 4), "other type": (0, 1)}
+SPANS = {"": (0, None), "alone": (0, 3), "abreast": (3, 6), "other type": (0, 1)}
 
 
 def compiled_functions() -> dict[str, Dispatcher]:
@@ -47,11 +47,13 @@ def several(make: Callable[[], st.System], count: int):
 
 
 def runs() -> Iterator[Callable[[], object]]:
-    """One contact first, several then, both side by side, everything else after these."""
+    """One contact first, then several in the plane and in space, all side by side, everything else after these."""
     yield lambda: marched(CASES["squeal"]())
     yield lambda: marched(pad_on(BELT, [WEAK] * 2), 1e-4)
+    yield lambda: marched(block_on_a_plane())
     yield lambda: several(CASES["squeal"], 8)
     yield lambda: several(lambda: pad_on(BELT, [WEAK] * 2), 8)
+    yield lambda: several(block_on_a_plane, 8)
     for count, make in ((4, CASES["judder"]), (9, CASES["dragged on a ramp"]), (5, lambda: oscillator(AGING))):
         yield lambda count=count, make=make: several(make, count)
     for make in CASES.values():

@@ -13,6 +13,7 @@ import stridula as st
 from kernels.general_twin import before_start, central, exact
 from kernels.way_in_space_twin import SLIDING, closing, on_bristles, sliding
 from stridula._kernels import layout as at
+from stridula._kernels.law_columns import LAW_COLUMNS
 from stridula.integration.contact_solve import GaussSeidel
 from stridula.integration.forces import forces_of
 
@@ -22,7 +23,7 @@ LAW = st.LuGre(0.6, 0.35, 0.05, 2e4, 8.0, 0.2)
 def test_one_step_has_the_forces_of_root_finding():
     random, step, speeds = np.random.default_rng(11), 1e-4, []
     codes = np.array([at.LUGRE, at.SECOND_TANGENT])
-    laws = np.zeros((2, at.LAW_PARAMETERS))
+    laws = np.zeros((2, LAW_COLUMNS))
     laws[:, :6] = list(LAW.parameters().values())
     for _ in range(100):
         w, gap = compliance_of(random), -(10.0 ** random.uniform(-8.0, -5.0))
@@ -56,7 +57,7 @@ def test_one_step_has_the_forces_of_root_finding():
 def test_one_step_of_a_slip_that_turns_has_the_forces_of_root_finding(law):
     random, step, turned = np.random.default_rng(12), 1e-4, []
     codes = np.array([at.STATIC_KINETIC if law.law == "static-kinetic" else at.STRIBECK, at.SECOND_TANGENT])
-    laws = np.zeros((2, at.LAW_PARAMETERS))
+    laws = np.zeros((2, LAW_COLUMNS))
     laws[:, : len(law.parameters())] = list(law.parameters().values())
     for _ in range(100):
         w, gap = compliance_of(random), -(10.0 ** random.uniform(-7.0, -6.0))

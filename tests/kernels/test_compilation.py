@@ -14,10 +14,10 @@ from numba.core.dispatcher import Dispatcher
 from stridula import integration, lowering
 from stridula._kernels import march
 
-from .caches import KERNEL, incomplete_cache
+from .caches import KERNEL, START, incomplete_cache
 
-# A single contact or several, alone or side by side.
-KINDS = 4
+# A single contact, several in the plane or in space, alone or side by side; the start of one run in either.
+KINDS, STARTS = 6, 2
 
 
 def counts(*words, **environment):
@@ -42,7 +42,7 @@ def test_nothing_compiles_twice(tmp_path):
     assert waited == [0.0]
     assert named(warm, "compiled") == set()
     several = {name: len(counted["signatures"]) for name, counted in warm.items() if len(counted["signatures"]) > 1}
-    assert several == {KERNEL: KINDS}
+    assert several == {KERNEL: KINDS, START: STARTS}
     # Negative control: a kernel that is not in the cache, and the code of a law as an integer of one byte. Compiled
     # without optimisation, which takes a tenth of the time.
     surroundings = {"NUMBA_CACHE_DIR": str(incomplete_cache(tmp_path)), "NUMBA_OPT": "0"}

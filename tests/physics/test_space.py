@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 import stridula as st
 from stridula._kernels import layout as at
+from stridula._kernels.law_columns import LAW_COLUMNS
 from stridula.integration.contact_solve import GaussSeidel
 from stridula.integration.forces import forces_of
 from stridula.verification.surfaces import RADIUS, WEIGHT, coin
@@ -77,7 +78,7 @@ def test_one_contact_has_the_forces_found_by_brute_force(mu):
         compliance = np.zeros((4, 4))
         where = [0, 1, 3]
         compliance[np.ix_(where, where)] = w
-        laws = np.array([at.COULOMB, at.SECOND_TANGENT]), np.full((2, at.LAW_PARAMETERS), mu)
+        laws = np.array([at.COULOMB, at.SECOND_TANGENT]), np.full((2, LAW_COLUMNS), mu)
         forces = forces_of(np.array([gap, 0.0]), slip, compliance, laws, np.zeros((2, at.CARRIED)), 1.0, GaussSeidel())
         scale = known[0]
         assert forces[0, 0] == pytest.approx(known[0], rel=1e-10)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 from dataclasses import fields
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +12,9 @@ import pytest
 import stridula as st
 from stridula._kernels import friction
 from stridula._kernels import layout as at
+from stridula._kernels.law_columns import LAW_COLUMNS, NEW_STATE, PARAMETERS
 from stridula.contact import LAWS
+from stridula.lowering.own_laws import CODES
 from stridula.scenarios.schema import json_schema
 
 NAN, INF = float("nan"), float("inf")
@@ -132,7 +136,8 @@ def test_every_law_is_tested():
 def test_declared_properties_of_laws_agree_with_the_march(law):
     code = getattr(at, law.kernel_code)
     assert law.set_valued == friction.set_valued.py_func(code)
-    assert len(law.parameters()) < at.LAW_PARAMETERS
+    assert set(law.parameters()) == set(PARAMETERS[code])
+    assert max(PARAMETERS[code].values()) < NEW_STATE < LAW_COLUMNS
     assert law.has_state == (not law.set_valued) == bool(law.state_units)
     slow, fast = law.coefficient_at(np.array([0.01, 0.1]))
     assert law.depends_on_speed == (slow != fast)
@@ -155,3 +160,22 @@ def test_the_schema_has_what_a_law_declares():
     assert velocity["anyOf"][0] == {"type": "number", "exclusiveMinimum": 0.0}
     assert velocity["description"] == "slip speed over which it falls, Stribeck's velocity [m/s]"
     assert known["RateAndState"]["properties"]["evolution"]["enum"] == ["aging", "slip"]
+
+
+def compared_by_order(text):
+    """Comparisons of codes of laws with each other by their order."""
+    order = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
+    return [
+        ast.unparse(node)
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, ast.Compare)
+        and any(isinstance(way, order) for way in node.ops)
+        and any(getattr(end, "attr", "") in CODES for end in (node.left, *node.comparators))
+    ]
+
+
+def test_nothing_depends_on_the_order_of_the_codes():
+    package = Path(st.__file__).parent
+    assert {path: found for path in package.rglob("*.py") if (found := compared_by_order(path.read_text()))} == {}
+    # Negative control.
+    assert compared_by_order("law <= at.LUGRE and law == at.SLIP") == ["law <= at.LUGRE"]

@@ -118,6 +118,13 @@ class Unknown(st.Coulomb):
     law: ClassVar[str] = "gap"
 
 
+class Renamed(st.Coulomb):
+    """A law with another name for its parameter than the march has."""
+
+    def parameters(self):
+        return {"mu": self.coefficient}
+
+
 class Younger(st.RateAndState):
     """A law that starts with contacts half as old as in steady sliding."""
 
@@ -139,6 +146,7 @@ class Stateless(st.RateAndState):
         (Bristly(0.5, 0.3, 0.1, 1e5), r"must have the slope .* s/m in linearised_across"),
         (Held(0.5, 0.3), r"must have the holding ratio 0.5, .*, got 0.9 of Held$"),
         (Unknown(0.3), r"must have a kernel_code out of COULOMB, .*, got 'GAP' of Unknown$"),
+        (Renamed(0.3), r"must have the parameters coefficient, .*, got mu of Renamed$"),
         (Younger(**LAWS[st.RateAndState]), r"must have the state_in_sliding\(.*\) of 100 s, .* got 50 of Younger$"),
         (Stateless(**LAWS[st.RateAndState]), r"must have has_state True"),
     ],

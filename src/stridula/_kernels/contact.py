@@ -7,6 +7,7 @@ import numba
 from . import layout as at
 from .friction import STRICT, set_valued, sliding_ratio, sticking_speed
 from .lanes import choose, magnitude
+from .law_columns import STATIC
 from .slipping import SEPARATED, SLIDING, STICKING, ratio_over_step, ratio_with_state
 
 # Most evaluations of the ratio for the normal force, those before it is sought by bisection, and the relative change of
@@ -33,10 +34,10 @@ def solve_contact(gap, slip, strayed, w, law, laws, i, before, let_go, step):
         return slide_on_its_way(gap, slip, strayed, w, law, laws, i, before, let_go, step)
     if w[3] == 0.0:
         return slide_as_prescribed(gap, slip, strayed, w[0], law, laws, i, before, step)
-    normal, tangential, status, jammed = solve_coulomb(gap, slip + strayed, w, laws[i, 0])
+    normal, tangential, status, jammed = solve_coulomb(gap, slip + strayed, w, laws[i, STATIC])
     last_slip = before[1]
     if before[0] == SLIDING and (status == STICKING or tangential * last_slip < 0.0):
-        turns, pressed, turned, slides = turn_round(gap, slip, last_slip, w, laws[i, 0], laws[i, 0])
+        turns, pressed, turned, slides = turn_round(gap, slip, last_slip, w, laws[i, STATIC], laws[i, STATIC])
         if turns:
             return pressed, turned, SLIDING if slides else STICKING, False
     return normal, tangential, status, jammed
@@ -71,7 +72,7 @@ def slide_on_its_way(gap, slip, strayed, w, law, laws, i, before, let_go, step):
             sticks = ratio_under(pressed, gap, slip, strayed, w, law, laws, i, before, let_go, step)[3] == STICKING
         if sticks:
             sense = 1.0 if needed >= 0.0 else -1.0
-            return pressed, needed, STICKING, w_nn - sense * laws[i, 0] * w_nt <= 0.0
+            return pressed, needed, STICKING, w_nn - sense * laws[i, STATIC] * w_nt <= 0.0
     ratio = before[5] / before[4] if before[4] > 0.0 else 0.0
     free = w_nn - ratio * w_nt
     normal = -gap / (free if free > 0.0 else w_nn)

@@ -7,6 +7,7 @@ import numba
 from . import layout as at
 from .contact import PATIENCE, ROUND_OFF, SLIDING, STICKING, TRIALS, velocity_at
 from .friction import STRICT, set_valued, sliding_ratio, sticking_speed
+from .law_columns import NEW_STATE, STATIC
 from .slipping_in_space import plus, ratio_over_step, ratio_with_state, size_of, sticking_forces
 
 
@@ -69,7 +70,7 @@ def slide_on_its_way(gap, slips, strays, w, law, laws, number, before, let_go, s
         if pressed > 0.0:
             tried = ratio_under(pressed, gap, slips, strays, w, law, laws, number, before, let_go, step)
             if tried[3] == STICKING:
-                most, pulled = laws[number, 0], math.hypot(first, second)
+                most, pulled = laws[number, STATIC], math.hypot(first, second)
                 lifted = most * (first * w[1] + second * w[2]) / pulled if pulled > 0.0 else 0.0
                 return pressed, first, second, float(STICKING), 1.0 if w[0] <= lifted else 0.0
     share = 1.0 / before[4] if before[4] > 0.0 else 0.0
@@ -119,7 +120,7 @@ def next_on_way_of_run(touch, gap, slips, strays, w, law, laws, number, before, 
     `touch` are normal force and status. Where bodies are apart, states are those of new contacts.
     """
     if touch[1] < 0.5:
-        fresh = laws[number, at.LAW_PARAMETERS - 1]
+        fresh = laws[number, NEW_STATE]
         return (0.0, 0.0), (fresh, fresh if law == at.LUGRE else 0.0), 0.0
     if law == at.COULOMB or is_prescribed(law, w):
         return (0.0, 0.0), before[3], 1.0 if touch[1] == STICKING else 0.0

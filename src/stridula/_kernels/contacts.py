@@ -14,9 +14,9 @@ from .direct import solve_states
 from .faces import displace, displace_freely, displace_in_space, own_compliance
 from .lanes import anywhere, choose, component, everywhere, held, hold, magnitude, placed
 from .modes import ENTRY, OPTIONS, PASTED
-from .solves import carried_by, forces_of_one, strayed
-from .space import free_of_own, is_second, put_second, solve_in_space
-from .yielding import comes_close, forces_yielding, forces_yielding_in_space, path_of, yields_anywhere, yields_of
+from .solves import carried_by, strayed
+from .space import free_of_own, is_second, put_second
+from .yielding import comes_close, forces_yielding, forces_yielding_in_space, path_of, yields_of
 
 # Sweeps before the first direct solve for the forces of the states found, and between direct solves.
 FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 1, 8
@@ -76,10 +76,7 @@ def forces_of_this(i, gap, slip, w, contacts, carried, let_go, step, run, runs, 
     )
     law, number = contacts.codes[i], i * runs + run
     before = carried_by(carried, i, run, zero)
-    yields = yields_of(i, contacts.constants, run, zero)
-    if not yields_anywhere(yields):
-        return forces_of_one(gap, slip, away, w, law, contacts.laws, number, at_rest, before, let_go, step, zero)
-    path = path_of(i, carried, run, zero)
+    yields, path = yields_of(i, contacts.constants, run, zero), path_of(i, carried, run, zero)
     friction = (law, contacts.laws, number, at_rest)
     normal, tangential, status, jammed, give, beyond = forces_yielding(
         (gap, slip, away, w), friction, before, let_go, step, yields, path, zero
@@ -94,10 +91,7 @@ def forces_of_this_in_space(i, contacts, carried, let_go, step, run, runs, zero)
     """Return normal force, both tangential forces, status and whether it jams, for contact `i` in space."""
     free, laws = free_of_own(contacts, carried, i, run, runs, zero)
     gap, slips, strays, w, law, number, before = free
-    yields = yields_of(i, contacts.constants, run, zero)
-    if not yields_anywhere(yields):
-        return solve_in_space(gap, slips, strays, w, law, laws, number, before, let_go, step)
-    path = path_of(i, carried, run, zero)
+    yields, path = yields_of(i, contacts.constants, run, zero), path_of(i, carried, run, zero)
     normal, first, second, status, jammed, give, beyond = forces_yielding_in_space(
         (gap, slips, strays, w), (law, laws, number), before, let_go, step, yields, path, zero
     )
@@ -107,8 +101,10 @@ def forces_of_this_in_space(i, contacts, carried, let_go, step, run, runs, zero)
 
 
 @numba.njit(**OPTIONS)
-def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
+def sweep_once(space, contacts, carried, sizes, step, done, run, runs, zero):
     """Solve contacts that may touch in turn, in runs not `done`; return the changes.
+
+    Nothing is compiled for contacts with two tangents if `space` is None.
 
     Returns
     -------
@@ -123,7 +119,7 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
     change, largest, misfit, reach, settled = zero, zero, zero, zero, zero + 1.0
     for i in range(sizes.contacts):
         here = i * at.IN_STEP
-        if sizes.space and is_second(contacts.codes, i):
+        if is_second(contacts.codes, i):
             continue
         gap = component(faces, 2 * i, DISPLACEMENT, run, zero)
         may_touch = held(now, here + at.MAY_TOUCH, run, zero)
@@ -138,13 +134,15 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
         )
         was, let_go = held(now, here + at.STATUS_NOW, run, zero), held(now, here + at.LET_GO, run, zero)
         w = own_compliance(faces, i, run, zero)
-        in_space = sizes.space and is_second(contacts.codes, i + 1)
-        second = zero
-        if in_space:
-            normal, tangential, second, status, jammed = forces_of_this_in_space(
-                i, contacts, carried, let_go, step, run, runs, zero
-            )
-        else:
+        second, normal, tangential, status, jammed = zero, zero, zero, zero, zero
+        in_space = False
+        if space is not None:
+            in_space = is_second(contacts.codes, i + 1)
+            if in_space:
+                normal, tangential, second, status, jammed = forces_of_this_in_space(
+                    i, contacts, carried, let_go, step, run, runs, zero
+                )
+        if not in_space:
             gap -= w[0] * was_normal - w[1] * was_tangential
             slip -= w[2] * was_normal - w[3] * was_tangential
             normal, tangential, status, jammed = forces_of_this(
@@ -163,7 +161,7 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
         more, pulled = normal - was_normal, tangential - was_tangential
         if not in_space:
             displace(faces, sizes.faces, i, run, more, pulled)
-        else:
+        elif space is not None:
             swerved = put_second(contacts, i, run, goes_on, normal, second, status, zero)
             displace_in_space(faces, sizes.faces, i, run, more, pulled, swerved)
             change = largest_of(change, magnitude(swerved))
@@ -193,7 +191,7 @@ def largest_of(one, other):
 
 
 @numba.njit(**PASTED)
-def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
+def solve_all(space, contacts, carried, touching, sizes, timing, run, runs, zero):
     """Solve contacts in turn until no force changes; return the number of sweeps and the error from the changes.
 
     The error is relative to the largest force. A direct solve helps sweeps that converge slowly with unchanged states.
@@ -206,7 +204,7 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
     given_up = zero
     for sweep in range(timing.sweeps):
         change, largest, misfit, reach, settled = sweep_once(
-            contacts, carried, sizes, timing.step, done, run, runs, zero
+            space, contacts, carried, sizes, timing.step, done, run, runs, zero
         )
         goes_on = done < 0.5
         exact = change <= ROUND_OFF * largest
@@ -247,8 +245,8 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
 
 
 @numba.njit(**ENTRY)
-def solve_closed(place, contacts, carried, sizes, timing):
+def solve_closed(space, place, contacts, carried, sizes, timing):
     """Solve the contacts of one run like a step of the march."""
     zero, run, runs = placed(place)
     start_from_last(contacts, carried, 1.0, sizes, run, zero)
-    return solve_all(contacts, carried, 1.0, sizes, timing, run, runs, zero)
+    return solve_all(space, contacts, carried, 1.0, sizes, timing, run, runs, zero)

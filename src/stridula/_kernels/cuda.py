@@ -39,17 +39,18 @@ def _is_ours(thing):
 _march = on_card(march)
 
 
-def _each(single, several):
-    """Return the kernel for a kind of system, as in `march`."""
+def _each(single, several, space):
+    """Return the kernel for a kind of systems, as in `march`."""
 
     @cuda.jit
     def march_each(runs, parts):
         """March `runs` runs, one in each thread."""
         run = cuda.grid(1)
         if run < runs:
-            _march(single, several, (run, runs), parts)
+            _march(single, several, space, (run, runs), parts)
 
     return march_each
 
 
-march_each_single, march_each = _each(True, None), _each(None, True)
+KINDS = (True, None, None), (None, True, None), (None, True, True)
+marches = {kind: _each(*kind) for kind in KINDS}

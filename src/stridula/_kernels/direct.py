@@ -54,14 +54,14 @@ def solve_states(contacts, carried, sizes, step, run, tried, zero):
         size = number_equations(contacts, sizes.contacts, run, zero)
         for j in range(sizes.contacts):
             if equation(now, j, at.NORMAL_EQUATION, run, zero) >= 0:
-                in_space = sizes.space and is_second(codes, j + 1)
+                in_space = is_second(codes, j + 1)
                 put_columns(contacts, sizes, j, in_space, size, run, zero)
                 put_rights(contacts, carried, j, in_space, size, run, zero)
         regular = eliminate(scratch, size, sizes.per_block, run, active, zero)
         for j in range(sizes.contacts):
             if equation(now, j, at.NORMAL_EQUATION, run, zero) >= 0:
                 more, pulled = take(contacts, j, j, size, regular, run, zero)
-                if sizes.space and is_second(codes, j + 1):
+                if is_second(codes, j + 1):
                     _, swerved = take(contacts, j, j + 1, size, regular, run, zero)
                     displace_in_space(contacts.faces, sizes.faces, j, run, more, pulled, swerved)
                 else:
@@ -77,7 +77,7 @@ def solve_states(contacts, carried, sizes, step, run, tried, zero):
         for j in range(sizes.contacts):
             alone = choose(vain > BLOCKS_IN_VAIN, choose(magnitude(last - j) < 0.5, active, zero), active)
             if not is_second(codes, j):
-                in_space = sizes.space and is_second(codes, j + 1)
+                in_space = is_second(codes, j + 1)
                 change(contacts, carried, sizes, j, in_space, step, alone, run, zero)
     given_up = choose(active > 0.5, 1.0, given_up)
     put_back(contacts, sizes, given_up, run, zero)
@@ -154,7 +154,7 @@ def compare(contacts, carried, sizes, slack, active, run, zero):
     for j in range(sizes.contacts):
         if is_second(contacts.codes, j):
             continue
-        here, in_space = j * at.IN_STEP, sizes.space and is_second(contacts.codes, j + 1)
+        here, in_space = j * at.IN_STEP, is_second(contacts.codes, j + 1)
         status, normal = held(now, here + at.STATUS_NOW, run, zero), held(now, here + at.NORMAL_NOW, run, zero)
         gap = component(contacts.faces, 2 * j, DISPLACEMENT, run, zero)
         closed, sticks = status > 0.5 * STICKING, magnitude(status - STICKING) < 0.5

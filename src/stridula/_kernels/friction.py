@@ -10,6 +10,25 @@ from typing import Any
 import numba
 
 from . import layout as at
+from .law_columns import (
+    BRISTLE_DAMPING,
+    BRISTLE_STIFFNESS,
+    BRISTLE_VISCOUS,
+    DIRECT,
+    END,
+    EVOLVING,
+    EXPONENT,
+    FLOOR,
+    KINETIC,
+    REFERENCE,
+    REFERENCE_VELOCITY,
+    SET_VALUED,
+    SLIP_DISTANCE,
+    SLOPE,
+    STATIC,
+    VELOCITY,
+    VISCOUS,
+)
 
 # Explicit, because a function inlined in the general march would inherit its permission to reorder sums, and would
 # round the distance from an anchor, slip + (material - anchor), like an abscissa.
@@ -19,49 +38,51 @@ STRICT: dict[str, Any] = {"cache": True, "fastmath": False, "error_model": "nump
 @numba.njit(**STRICT)
 def set_valued(law):
     """Return whether a law sticks exactly."""
-    return law <= at.LINEAR_WEAKENING
+    return SET_VALUED[law]
 
 
 @numba.njit(**STRICT)
 def holding_ratio(law, laws, i, was_sticking):
     """Return the ratio up to which a contact under a set-valued law is held."""
     if law == at.STATIC_KINETIC and not was_sticking:
-        return laws[i, 1]
-    return laws[i, 0]
+        return laws[i, KINETIC]
+    return laws[i, STATIC]
 
 
 @numba.njit(**STRICT)
 def sliding_ratio(law, laws, i, speed):
     """Return the ratio of a set-valued law in sliding at `speed`."""
     if law == at.COULOMB:
-        return laws[i, 0]
+        return laws[i, STATIC]
     if law == at.STATIC_KINETIC:
-        return laws[i, 1]
+        return laws[i, KINETIC]
     if law == at.STRIBECK:
         return (
-            laws[i, 1]
-            + (laws[i, 0] - laws[i, 1]) * math.exp(-((speed / laws[i, 2]) ** laws[i, 3]))
-            + laws[i, 4] * speed
+            laws[i, KINETIC]
+            + (laws[i, STATIC] - laws[i, KINETIC]) * math.exp(-((speed / laws[i, VELOCITY]) ** laws[i, EXPONENT]))
+            + laws[i, VISCOUS] * speed
         )
-    return max(laws[i, 0] - laws[i, 1] * speed, laws[i, 2])
+    return max(laws[i, STATIC] - laws[i, SLOPE] * speed, laws[i, FLOOR])
 
 
 @numba.njit(**STRICT)
 def speed_scale(law, laws, i, state):
     """Return the slip speed above which the ratio of a law begins to bend."""
     if law == at.LINEAR_WEAKENING:
-        return laws[i, 3]
-    if law <= at.LUGRE:
-        return laws[i, 2]
+        return laws[i, END]
+    if law == at.STRIBECK or law == at.LUGRE:
+        return laws[i, VELOCITY]
     # a asinh(V / w): w = 2 V0 exp(-(reference + b ln(V0 theta / D)) / a), kept above the smallest numbers.
-    return 2.0 * laws[i, 4] * math.exp(-min(ageing(laws, i, state), 600.0))
+    return 2.0 * laws[i, REFERENCE_VELOCITY] * math.exp(-min(ageing(laws, i, state), 600.0))
 
 
 @numba.njit(inline="always", **STRICT)
 def bristle_limit(laws, i, speed):
     """Return the deflection of LuGre's bristles in steady sliding at a speed, and its derivative by the speed."""
-    weakened = (laws[i, 0] - laws[i, 1]) * math.exp(-((speed / laws[i, 2]) ** 2))
-    return (laws[i, 1] + weakened) / laws[i, 3], -2.0 * speed / (laws[i, 2] * laws[i, 2]) * weakened / laws[i, 3]
+    weakened = (laws[i, STATIC] - laws[i, KINETIC]) * math.exp(-((speed / laws[i, VELOCITY]) ** 2))
+    return (laws[i, KINETIC] + weakened) / laws[i, BRISTLE_STIFFNESS], -2.0 * speed / (
+        laws[i, VELOCITY] * laws[i, VELOCITY]
+    ) * weakened / laws[i, BRISTLE_STIFFNESS]
 
 
 @numba.njit(inline="always", **STRICT)
@@ -93,13 +114,13 @@ def next_state(law, laws, i, state, velocity, step):
     if law == at.LUGRE:
         kept, share, _, _, _ = bristles_over(laws, i, speed, step)
         return state * kept + velocity * step * share
-    turned = speed * step / laws[i, 3]
+    turned = speed * step / laws[i, SLIP_DISTANCE]
     if law == at.AGING:
         share = 1.0 - 0.5 * turned if turned < 1e-8 else -math.expm1(-turned) / turned
         return state * math.exp(-turned) + step * share
     if turned == 0.0:
         return state
-    age = speed * state / laws[i, 3]
+    age = speed * state / laws[i, SLIP_DISTANCE]
     return state * age ** math.expm1(-turned)
 
 
@@ -109,18 +130,22 @@ def state_ratio(law, laws, i, state, velocity):
     speed = abs(velocity)
     if law == at.LUGRE:
         rate = velocity - speed * state / bristle_limit(laws, i, speed)[0]
-        return laws[i, 3] * state + laws[i, 4] * rate + laws[i, 5] * velocity
+        return (
+            laws[i, BRISTLE_STIFFNESS] * state + laws[i, BRISTLE_DAMPING] * rate + laws[i, BRISTLE_VISCOUS] * velocity
+        )
     if velocity == 0.0:
         return 0.0
-    exponent = ageing(laws, i, state) + math.log(speed / (2.0 * laws[i, 4]))
+    exponent = ageing(laws, i, state) + math.log(speed / (2.0 * laws[i, REFERENCE_VELOCITY]))
     ratio = exponent + math.log(2.0) if exponent > 30.0 else math.asinh(math.exp(exponent))
-    return math.copysign(laws[i, 1] * ratio, velocity)
+    return math.copysign(laws[i, DIRECT] * ratio, velocity)
 
 
 @numba.njit(inline="always", **STRICT)
 def ageing(laws, i, state):
     """Return the logarithm of the velocity of the law over that at which a contact of this state creeps."""
-    return (laws[i, 0] + laws[i, 2] * math.log(laws[i, 4] * state / laws[i, 3])) / laws[i, 1]
+    return (
+        laws[i, REFERENCE] + laws[i, EVOLVING] * math.log(laws[i, REFERENCE_VELOCITY] * state / laws[i, SLIP_DISTANCE])
+    ) / laws[i, DIRECT]
 
 
 @numba.njit(**STRICT)
@@ -135,31 +160,37 @@ def ratio_after(law, laws, i, state, velocity, time):
         limit, limit_slope = bristle_limit(laws, i, speed)
         bent = sense * new / limit
         rate_slope = 1.0 - bent - speed / limit * (new_slope - bent * limit_slope)
-        ratio = laws[i, 3] * new + laws[i, 4] * velocity * (1.0 - bent) + laws[i, 5] * velocity
-        return ratio, laws[i, 3] * new_slope + laws[i, 4] * rate_slope + laws[i, 5]
-    turned = speed * time / laws[i, 3]
+        ratio = (
+            laws[i, BRISTLE_STIFFNESS] * new
+            + laws[i, BRISTLE_DAMPING] * velocity * (1.0 - bent)
+            + laws[i, BRISTLE_VISCOUS] * velocity
+        )
+        return ratio, laws[i, BRISTLE_STIFFNESS] * new_slope + laws[i, BRISTLE_DAMPING] * rate_slope + laws[
+            i, BRISTLE_VISCOUS
+        ]
+    turned = speed * time / laws[i, SLIP_DISTANCE]
     new, new_slope = state, 0.0
     if law == at.AGING:
         kept = math.exp(-turned)
         share = 1.0 - 0.5 * turned if turned < 1e-8 else -math.expm1(-turned) / turned
         share_slope = turned / 3.0 - 0.5 if turned < 1e-4 else (kept - share) / turned
         new = state * kept + time * share
-        new_slope = (time * share_slope - state * kept) * time / laws[i, 3]
+        new_slope = (time * share_slope - state * kept) * time / laws[i, SLIP_DISTANCE]
     elif turned > 0.0:
-        kept, age = math.expm1(-turned), math.log(speed * state / laws[i, 3])
+        kept, age = math.expm1(-turned), math.log(speed * state / laws[i, SLIP_DISTANCE])
         new = state * math.exp(age * kept)
-        new_slope = new * (kept / speed - age * (kept + 1.0) * time / laws[i, 3])
+        new_slope = new * (kept / speed - age * (kept + 1.0) * time / laws[i, SLIP_DISTANCE])
     if speed == 0.0:
-        return 0.0, laws[i, 1] * math.exp(min(ageing(laws, i, new), 600.0)) / (2.0 * laws[i, 4])
-    exponent = ageing(laws, i, new) + math.log(speed / (2.0 * laws[i, 4]))
+        return 0.0, laws[i, DIRECT] * math.exp(min(ageing(laws, i, new), 600.0)) / (2.0 * laws[i, REFERENCE_VELOCITY])
+    exponent = ageing(laws, i, new) + math.log(speed / (2.0 * laws[i, REFERENCE_VELOCITY]))
     argument = math.exp(min(exponent, 300.0))
     ratio = exponent + math.log(2.0) if exponent > 30.0 else math.asinh(argument)
     bent = argument / math.sqrt(1.0 + argument * argument)
-    slope = laws[i, 1] * bent * (1.0 / speed + laws[i, 2] / laws[i, 1] * new_slope / new)
-    return math.copysign(laws[i, 1] * ratio, velocity), slope
+    slope = laws[i, DIRECT] * bent * (1.0 / speed + laws[i, EVOLVING] / laws[i, DIRECT] * new_slope / new)
+    return math.copysign(laws[i, DIRECT] * ratio, velocity), slope
 
 
 @numba.njit(**STRICT)
 def sticking_speed(law, laws, i):
     """Return the slip speed below which a law with internal state counts as sticking."""
-    return laws[i, 2] if law == at.LUGRE else laws[i, 4]
+    return laws[i, VELOCITY] if law == at.LUGRE else laws[i, REFERENCE_VELOCITY]

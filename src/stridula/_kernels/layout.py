@@ -48,11 +48,10 @@ MOTIONS = 3
 ) = range(14)
 CONTACT_CONSTANTS = 14
 
-# Laws of friction, and the parameters of each, the state of a new contact last.
+# Laws of friction.
 COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, LUGRE, AGING, SLIP = range(7)
 # In place of the law: the pair of rows is the second of the contact before it.
 SECOND_TANGENT = -1
-LAW_PARAMETERS = 8
 
 # Scalars that each contact carries from step to step: material abscissa of the tip, anchor of the stick, last status,
 # tip's abscissa at the last two steps, last slip and the one before, internal state of the law, forces and gap of the

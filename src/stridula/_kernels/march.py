@@ -6,6 +6,7 @@ Steps 1 to 6 in docstrings and comments of this package are those of *Contact in
 import math
 
 import numba
+import numpy as np
 
 from . import layout as at
 from .block_rows import CONTACTS, SINE
@@ -52,20 +53,22 @@ def record_row(parts, sample, n, run, runs, zero):
 
 
 @numba.njit(**ENTRY)
-def march(single, several, place, parts):
+def march(single, several, space, place, parts):
     """March through the samples of the records, or until all runs have ended.
 
     Quantities of a run have a column for each run; several numbers of a kind have groups of columns. `zero` has the
     type of the numbers of a run: a number, or a vector of several runs; `run` is the first of these runs, `runs` the
     number of columns. All three follow from `place`, as in `lanes.placed`. `several` is None for a single contact
-    between bodies of uncoupled modes that do not turn, else `single` is None: only the steps of one kind are compiled.
+    between bodies of uncoupled modes that do not turn, else `single` is None; `space` is None where no body
+    turns and every contact has one tangent. Only the steps of one kind are compiled.
     """
     zero, run, runs = placed(place)
     sizes, timing, signals = parts.sizes, parts.timing, parts.imposed.signals
     begin(parts, run, zero)
     ended, completed = zero, zero
     touch, free, w = (zero, zero, zero, zero), (zero, zero, zero), (zero, zero, zero, zero)
-    n, pending, sine, advance = 0, False, SINE, zero
+    # Converted, constants have no literal types, for each of which functions would be compiled again.
+    n, pending, sine, advance = np.int64(0), np.bool_(False), np.int64(SINE), zero
     for sample in range(parts.records.energies.shape[0]):
         begin_row(parts, run, zero)
         for i in range(timing.steps_per_sample):
@@ -75,8 +78,9 @@ def march(single, several, place, parts):
                 free, w, touch, leaves, why = touch_one(parts, n, loop, ended, run, runs, zero)
                 sine = 2 - sine
             if several is not None:
-                turn_bodies(parts, n, run, runs, zero)
-                leaves, why = touch_many(parts, n, ended, run, runs, zero)
+                if space is not None:
+                    turn_bodies(parts, n, run, runs, zero)
+                leaves, why = touch_many(space, parts, n, ended, run, runs, zero)
             if anywhere(leaves > 0.5):
                 ended, completed = leave(ended, completed, leaves, why, sample, parts.state, run, zero)
                 if everywhere(ended > 0.0):
@@ -89,8 +93,9 @@ def march(single, several, place, parts):
                     done = complete_one(parts.modes, parts.paths, touch, sine, run, zero)
                     credit(parts.state.energies, done[0], done[1], done[2] * advance, run, zero)
             if several is not None:
-                keep_many(parts, n, run, runs, zero)
-                credit_turning(parts, run, zero)
+                keep_many(space, parts, n, run, runs, zero)
+                if space is not None:
+                    credit_turning(parts, run, zero)
             if not pending:
                 keep_probes_at(parts, n, run, runs, zero)
             n += 1

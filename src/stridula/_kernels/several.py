@@ -45,8 +45,9 @@ UNBELIEVABLE = 1e-3
 
 
 @numba.njit(**PASTED)
-def solve_several(modes, paths, contacts, state, sizes, timing, run, runs, zero):
+def solve_several(space, parts, run, runs, zero):
     """Set forces, status, gap and slip of all contacts (steps 4 and 5); return the error of the forces."""
+    sizes, contacts, state, timing = parts.sizes, parts.contacts, parts.state, parts.timing
     now, faces, count = contacts.now, contacts.faces, sizes.contacts
     touching, closed = zero, zero
     for i in range(count):
@@ -55,11 +56,11 @@ def solve_several(modes, paths, contacts, state, sizes, timing, run, runs, zero)
         touching = choose(close > 0.5, 1.0, touching)
         closed = choose(held(state.carried, i * at.CARRIED + at.STATUS, run, zero) > 0.5, 1.0, closed)
     if sizes.paths and (anywhere(touching > 0.5) or anywhere(closed > 0.5)):
-        soften(modes, paths, contacts, sizes, run, zero)
+        soften(parts.modes, parts.paths, contacts, sizes, run, zero)
     start_from_last(contacts, state.carried, touching, sizes, run, zero)
     made, error = zero, zero
     if anywhere(touching > 0.5):
-        made, error = solve_all(contacts, state.carried, touching, sizes, timing, run, runs, zero)
+        made, error = solve_all(space, contacts, state.carried, touching, sizes, timing, run, runs, zero)
     most = held(state.energies, at.ITERATIONS, run, zero)
     hold(state.energies, at.ITERATIONS, run, choose(made > most, made, most))
     add(state.energies, at.UNSOLVED, run, choose(error <= timing.tolerance, zero, 1.0), zero)
@@ -75,7 +76,7 @@ def solve_several(modes, paths, contacts, state, sizes, timing, run, runs, zero)
         # From here on, free gap and slip lack the forces of this contact only.
         hold(now, here + at.FREE_GAP, run, gap - w[0] * normal + w[1] * tangential)
         hold(now, here + at.FREE_SLIP, run, slip - w[2] * normal + w[3] * tangential)
-    if sizes.space:
+    if space is not None:
         free_in_space(contacts, sizes, run, zero)
     return error
 
@@ -189,17 +190,15 @@ def keep_books_of(i, contacts, state, imposed, timing, n, run, runs, zero):
 
 
 @numba.njit(**PASTED)
-def touch_many(parts, n, ended, run, runs, zero):
+def touch_many(space, parts, n, ended, run, runs, zero):
     """Try step `n` and solve for the forces of all contacts (steps 1 to 5); return where a run leaves, and why."""
     sizes, contacts, state = parts.sizes, parts.contacts, parts.state
     after = n + 2 if parts.imposed.motion.shape[0] > 1 else 0
-    try_many(
-        parts.modes, parts.paths, contacts, parts.turning, state, parts.imposed, sizes, after, ended, run, runs, zero
-    )
+    try_many(space, parts, after, ended, run, runs, zero)
     leaves, why = zero, zero
     if sizes.paths:
         leaves, why = any_beyond_ends(sizes, parts.paths, contacts, state, run, zero)
-    error = solve_several(parts.modes, parts.paths, contacts, state, sizes, parts.timing, run, runs, zero)
+    error = solve_several(space, parts, run, runs, zero)
     unsolved = choose(leaves > 0.5, zero, choose(error <= UNBELIEVABLE, zero, 1.0))
     if anywhere(unsolved > 0.5):
         keep_unsolved(contacts, state, sizes, choose(ended > 0.0, zero, unsolved), run, zero)
@@ -209,19 +208,21 @@ def touch_many(parts, n, ended, run, runs, zero):
 
 
 @numba.njit(**PASTED)
-def keep_many(parts, n, run, runs, zero):
+def keep_many(space, parts, n, run, runs, zero):
     """Complete step `n` under the forces of all contacts (step 6), and do their bookkeeping."""
     contacts, state, imposed = parts.contacts, parts.state, parts.imposed
     after = n + 2 if imposed.motion.shape[0] > 1 else 0
     work, lost = complete_many(parts.modes, parts.paths, contacts, parts.sizes, run, zero)
     credit(state.energies, work, lost, zero, run, zero)
     for i in range(parts.sizes.contacts):
-        if parts.sizes.space and is_second(contacts.codes, i + 1):
+        in_space = is_second(contacts.codes, i + 1)
+        if space is not None and in_space:
             keep_books_in_space(i, contacts, state, imposed, parts.timing, n, run, runs, zero)
-        elif not (parts.sizes.space and is_second(contacts.codes, i)):
+        if not (in_space or is_second(contacts.codes, i)):
             keep_books_of(i, contacts, state, imposed, parts.timing, n, run, runs, zero)
         place, slope = place_after(i, parts.modes, parts.paths, contacts, state, imposed, after, run, runs, zero)
-        if parts.sizes.circles and parts.paths.body_of[i] >= 0 and not is_second(contacts.codes, i):
+        goes_round = parts.sizes.circles and parts.paths.body_of[i] >= 0
+        if space is not None and goes_round and not is_second(contacts.codes, i):
             work = convected(i, place, parts.modes, parts.paths, contacts, parts.turning, state.carried, run, zero)
             add(state.energies, at.CONVECTION_WORK, run, work, zero)
         way = keep_place(i, state.carried, place, run, zero)

@@ -8,9 +8,9 @@ from .lanes import anywhere, choose, held, hold
 from .leaving import beyond_ends
 from .modes import PASTED
 from .recording import keep_probes_at
-from .solves import carried_by, forces_of_one, strayed
+from .solves import carried_by, strayed
 from .trying import try_one
-from .yielding import comes_close, forces_yielding, path_of, yields_anywhere, yields_of
+from .yielding import comes_close, forces_yielding, path_of, yields_of
 
 
 @numba.njit(**PASTED)
@@ -23,17 +23,14 @@ def solve_single(free, contacts, carried, w, timing, run, zero):
         return zero, zero, zero, zero
     law, at_rest = contacts.codes[0], held(contacts.constants, at.AT_REST, run, zero)
     away, before = strayed(carried, 0, run, zero), carried_by(carried, 0, run, zero)
-    yields = yields_of(0, contacts.constants, run, zero)
-    if yields_anywhere(yields):
-        path = path_of(0, carried, run, zero)
-        friction = (law, contacts.laws, run, at_rest)
-        normal, tangential, status, jammed, give, beyond = forces_yielding(
-            (gap, slip, away, w), friction, before, zero, timing.step, yields, path, zero
-        )
-        hold(contacts.now, at.GIVE, run, give)
-        hold(contacts.now, at.BEYOND, run, beyond)
-        return normal, tangential, status, jammed
-    return forces_of_one(gap, slip, away, w, law, contacts.laws, run, at_rest, before, zero, timing.step, zero)
+    yields, path = yields_of(0, contacts.constants, run, zero), path_of(0, carried, run, zero)
+    friction = (law, contacts.laws, run, at_rest)
+    normal, tangential, status, jammed, give, beyond = forces_yielding(
+        (gap, slip, away, w), friction, before, zero, timing.step, yields, path, zero
+    )
+    hold(contacts.now, at.GIVE, run, give)
+    hold(contacts.now, at.BEYOND, run, beyond)
+    return normal, tangential, status, jammed
 
 
 @numba.njit(**PASTED)

@@ -21,6 +21,7 @@ from .friction import (
     speed_scale,
     state_ratio,
 )
+from .law_columns import BRISTLE_STIFFNESS, FLOOR, KINETIC, SLIP_DISTANCE, SLOPE, STATIC, VELOCITY, VISCOUS
 
 # A contact that stopped slid in this step and is at rest at its end: the next step finds it sticking.
 SEPARATED, STICKING, SLIDING, STOPPED = 0, 1, 2, 3
@@ -60,10 +61,10 @@ def part_of(slip, rate, ratio, pull, law, laws, i, step):
         return 1.0
     scale, size = speed_scale(law, laws, i, 0.0) * step, abs(slip)
     if law == at.LINEAR_WEAKENING:
-        steep = laws[i, 1] / step if ratio > laws[i, 2] else 0.0
+        steep = laws[i, SLOPE] / step if ratio > laws[i, FLOOR] else 0.0
     else:
-        viscous = laws[i, 4] / step
-        steep = (ratio - laws[i, 1] - viscous * size) / scale + viscous
+        viscous = laws[i, VISCOUS] / step
+        steep = (ratio - laws[i, KINETIC] - viscous * size) / scale + viscous
     part = PART / (abs(rate) / (scale + size) + pull * steep + PART)
     return max(part, 1.0 / MOST_PARTS)
 
@@ -244,10 +245,10 @@ def velocity_after(free, pulled, guess, law, laws, i, state, time):
 def parts_with_state(slip, drive, pull, law, laws, i, step):
     """Return the number of parts of the way under a law with internal state."""
     if law == at.LUGRE:
-        change = (abs(drive) + pull * laws[i, 0]) / (4.0 * laws[i, 2] * step)
-        count = 1.0 + max(math.sqrt(pull * laws[i, 3]) / PHASE, change)
+        change = (abs(drive) + pull * laws[i, STATIC]) / (4.0 * laws[i, VELOCITY] * step)
+        count = 1.0 + max(math.sqrt(pull * laws[i, BRISTLE_STIFFNESS]) / PHASE, change)
     else:
-        count = 2.0 + (abs(slip) + abs(drive)) / (AGEING * laws[i, 3])
+        count = 2.0 + (abs(slip) + abs(drive)) / (AGEING * laws[i, SLIP_DISTANCE])
     return int(min(count, float(MOST_PARTS)))
 
 

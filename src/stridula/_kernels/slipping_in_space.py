@@ -20,6 +20,7 @@ from .friction import (
     speed_scale,
     state_ratio,
 )
+from .law_columns import BRISTLE_DAMPING, BRISTLE_STIFFNESS, BRISTLE_VISCOUS
 from .slipping import (
     GROWTH_AT_STAGE,
     MOST_PARTS,
@@ -371,8 +372,8 @@ def friction_after(law, laws, i, state, speed, time):
     """
     if law == at.LUGRE:
         kept, share, _, _, _ = bristles_over(laws, i, speed, time)
-        felt = laws[i, 3] - laws[i, 4] * speed / bristle_limit(laws, i, speed)[0]
-        return felt * kept, felt * time * share + laws[i, 4] + laws[i, 5]
+        felt = laws[i, BRISTLE_STIFFNESS] - laws[i, BRISTLE_DAMPING] * speed / bristle_limit(laws, i, speed)[0]
+        return felt * kept, felt * time * share + laws[i, BRISTLE_DAMPING] + laws[i, BRISTLE_VISCOUS]
     ratio, slope = ratio_after(law, laws, i, state[0], speed, time)
     return 0.0, ratio / speed if speed > 0.0 else slope
 
@@ -459,9 +460,10 @@ def ratio_of_state(law, laws, i, state, velocity):
     speed = size_of(velocity)
     if law == at.LUGRE:
         turned = plus(velocity, -speed / bristle_limit(laws, i, speed)[0], state)
+        stiffness, damping, viscous = laws[i, BRISTLE_STIFFNESS], laws[i, BRISTLE_DAMPING], laws[i, BRISTLE_VISCOUS]
         return (
-            laws[i, 3] * state[0] + laws[i, 4] * turned[0] + laws[i, 5] * velocity[0],
-            laws[i, 3] * state[1] + laws[i, 4] * turned[1] + laws[i, 5] * velocity[1],
+            stiffness * state[0] + damping * turned[0] + viscous * velocity[0],
+            stiffness * state[1] + damping * turned[1] + viscous * velocity[1],
         )
     ratio, way = state_ratio(law, laws, i, state[0], speed), direction_of(velocity, (1.0, 0.0))
     return ratio * way[0], ratio * way[1]

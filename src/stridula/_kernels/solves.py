@@ -7,6 +7,7 @@ from . import layout as at
 from .contact import SLIDING, STICKING, ratio_under, solve_contact, turn_round
 from .friction import STRICT, set_valued
 from .lanes import anywhere, choose, everywhere, held, lane, magnitude, spread, with_lane
+from .law_columns import NEW_STATE
 from .modes import OPTIONS, PASTED
 from .slipping import STOPPED
 from .vectors import LANES, VECTOR
@@ -73,7 +74,7 @@ def solve_one_run(gap, slip, strayed, w, law, laws, run, before, let_go, step):
 def next_on_way_of_run(touch, gap, slip, strayed, w, law, laws, run, before, let_go, step):
     """Do `next_on_way` for one run."""
     if touch[1] < 0.5:
-        return 0.0, laws[run, at.LAW_PARAMETERS - 1], 0.0
+        return 0.0, laws[run, NEW_STATE], 0.0
     if law == at.COULOMB or (set_valued(law) and w[3] == 0.0):
         return 0.0, before[3], 1.0 if touch[1] == STICKING else 0.0
     _, past, state, _, stuck = ratio_under(touch[0], gap, slip, strayed, w, law, laws, run, before, let_go > 0.5, step)

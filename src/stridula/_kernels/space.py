@@ -17,6 +17,7 @@ from .contact import SLIDING
 from .contact_in_space import next_on_way_of_run, slide_on_its_way
 from .friction import STRICT
 from .lanes import choose, component, held, hold, lane, spread, with_lane
+from .law_columns import STATIC
 from .modes import OPTIONS, PASTED
 from .solves import carried_by, solve_one_run, strayed
 from .vectors import LANES, VECTOR
@@ -207,7 +208,7 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
     if law != at.COULOMB:
         return slide_on_its_way(gap, slips, strays, w, law, laws, number, before, let_go > 0.5, step)
     first, second, held = sticking_direction(gap, slips[0] + strays[0], slips[1] + strays[1], w)
-    mu, was, last, guess = laws[number, 0], before[0], before[1], before[6]
+    mu, was, last, guess = laws[number, STATIC], before[0], before[1], before[6]
     may_hold = held <= mu or mu == 0.0
     if not may_hold:
         strength = math.hypot(guess[0], guess[1])

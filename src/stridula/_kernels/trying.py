@@ -1,6 +1,7 @@
 """Trial and completion of steps of the modes (1 to 4, 6): with one contact in one pass, with several in three."""
 
 import numba
+import numpy as np
 
 from . import layout as at
 from .block_rows import CONTACTS, POSITION, SINE, Q
@@ -110,20 +111,23 @@ def complete_one(modes, paths, touch, sine, run, zero):
     """Complete a step of a single contact without trying the next (step 6); return `done` as in `try_one`."""
     rows, spans = modes.rows, paths.spans
     normal, tangential = touch[0], touch[1]
-    _, _, works, losses = pass_fixed(rows, spans[0, at.BEGIN], spans[0, at.END], run, True, normal, tangential)
+    pending = np.bool_(True)
+    _, _, works, losses = pass_fixed(rows, spans[0, at.BEGIN], spans[0, at.END], run, pending, normal, tangential)
     slope = zero
     for s in range(1, paths.first_span[1]):
         upright = spans[s, at.KIND] == at.PATH_NORMAL
         pull = -normal if upright else tangential
-        _, _, slopes, work, loss = pass_waves(modes, paths, s, run, True, pull, sine, sine, zero)
+        _, _, slopes, work, loss = pass_waves(modes, paths, s, run, pending, pull, sine, sine, zero)
         works, losses = works + work, losses + loss
         slope += normal * total(slopes, zero) if upright else -tangential * total(slopes, zero)
     return 0.5 * total(works, zero), 0.25 * total(losses, zero), slope
 
 
 @numba.njit(**OPTIONS)
-def try_many(modes, paths, contacts, turning, state, imposed, sizes, n, ended, run, runs, zero):
+def try_many(space, parts, n, ended, run, runs, zero):
     """Try a step of all modes, and set place, gap and slip of each contact without contact forces (steps 1 to 3)."""
+    sizes, modes, paths, contacts = parts.sizes, parts.modes, parts.paths, parts.contacts
+    turning, state, imposed = parts.turning, parts.state, parts.imposed
     rows, spans, now = modes.rows, paths.spans, contacts.now
     # Step 1.
     places = sizes.coupled * sizes.per_block
@@ -150,7 +154,7 @@ def try_many(modes, paths, contacts, turning, state, imposed, sizes, n, ended, r
                     moved = product(rows, row, POSITION, begin, end, run, zero)
                     gap += moved if upright else zero
                     slip += zero if upright else moved
-        elif sizes.circles and paths.body_of[i] >= 0:
+        elif space is not None and sizes.circles and paths.body_of[i] >= 0:
             moved = (place, track)
             rise, slip = go_round(i, moved, modes, paths, contacts, turning, state, imposed, n, run, runs, zero)
             gap += rise

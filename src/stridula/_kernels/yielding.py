@@ -69,18 +69,21 @@ def is_settled(reached, normal, give, beyond, w_nn, gap, yields):
 
 @numba.njit(**OPTIONS)
 def forces_yielding(free, friction, before, let_go, step, yields, path, zero):
-    """Return the result of `forces_of_one` for a yielding contact, with its give and the indentation beyond that.
+    """Return the result of `forces_of_one` for a contact that may yield, its give and the indentation beyond that.
 
-    Newton's method for the indentation, from that without force. `free` are gap, slip, distance of a stick from its
-    anchor, compliance; `friction` the law, all laws, the number among these and the ratio at rest; `path` the
-    indentations of the last three steps.
+    Newton's method for the indentation, from that without force; a rigid contact is solved once. `free` are gap, slip,
+    distance of a stick from its anchor, compliance; `friction` the law, all laws, the number among these and the ratio
+    at rest; `path` the indentations of the last three steps.
     """
     gap, slip, away, w = free
     law, laws, number, at_rest = friction
     done = zero
     normal, tangential, status, jammed, give, beyond = zero, zero, zero, zero, zero, zero
-    share = share_of(-gap, path, yields)
-    softer, further = give_of(-gap, path, yields, share, w[0], step, zero)
+    share, softer, further = zero, zero, zero
+    soft = yields_anywhere(yields)
+    if soft:
+        share = share_of(-gap, path, yields)
+        softer, further = give_of(-gap, path, yields, share, w[0], step, zero)
     for _ in range(STEPS):
         one = forces_of_one(
             gap + further,
@@ -100,6 +103,8 @@ def forces_yielding(free, friction, before, let_go, step, yields, path, zero):
         normal, tangential = choose(goes_on, one[0], normal), choose(goes_on, one[1], tangential)
         status, jammed = choose(goes_on, one[2], status), choose(goes_on, one[3], jammed)
         give, beyond = choose(goes_on, softer, give), choose(goes_on, further, beyond)
+        if not soft:
+            break
         reached = -(gap + w[0] * normal - w[1] * tangential)
         softer, further = give_of(reached, path, yields, share, w[0], step, zero)
         done = choose(goes_on, is_settled(reached, normal, softer, further, w[0], gap, yields), 1.0)
@@ -115,8 +120,11 @@ def forces_yielding_in_space(free, friction, before, let_go, step, yields, path,
     law, laws, number = friction
     done = zero
     normal, first, second, status, jammed, give, beyond = zero, zero, zero, zero, zero, zero, zero
-    share = share_of(-gap, path, yields)
-    softer, further = give_of(-gap, path, yields, share, w[0], step, zero)
+    share, softer, further = zero, zero, zero
+    soft = yields_anywhere(yields)
+    if soft:
+        share = share_of(-gap, path, yields)
+        softer, further = give_of(-gap, path, yields, share, w[0], step, zero)
     for _ in range(STEPS):
         softened = (w[0] + softer, w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8])
         one = solve_in_space(gap + further, slips, strays, softened, law, laws, number, before, let_go, step)
@@ -128,6 +136,8 @@ def forces_yielding_in_space(free, friction, before, let_go, step, yields, path,
         )
         status, jammed = choose(goes_on, one[3], status), choose(goes_on, one[4], jammed)
         give, beyond = choose(goes_on, softer, give), choose(goes_on, further, beyond)
+        if not soft:
+            break
         reached = -(gap + w[0] * normal - w[1] * first - w[2] * second)
         softer, further = give_of(reached, path, yields, share, w[0], step, zero)
         done = choose(goes_on, is_settled(reached, normal, softer, further, w[0], gap, yields), 1.0)

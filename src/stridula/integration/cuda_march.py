@@ -102,13 +102,13 @@ class CudaMarch(March):
         return twin
 
     def _march(self, imposed: Imposed, records: Records) -> None:
-        from .._kernels.cuda import march_each, march_each_single
+        from .._kernels.cuda import marches
 
         imposed, filled = self._moved(imposed), self._moved(records)
         modes, paths, contacts, turning, carried, probes = self.there
         parts = Parts(self.layout.sizes, self.timing, modes, paths, contacts, turning, carried, imposed, probes, filled)
         grid = -(-self.runs // self.threads_per_block)
-        kernel = march_each_single if self.is_single else march_each
-        kernel[grid, self.threads_per_block](self.runs, parts)
+        kinds: dict[Any, Any] = marches
+        kinds[self.kind][grid, self.threads_per_block](self.runs, parts)
         for array, output in zip(filled, records, strict=True):
             array.copy_to_host(output)

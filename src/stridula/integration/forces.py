@@ -6,6 +6,7 @@ import numpy as np
 
 from .._kernels import layout as at
 from .._kernels.contacts import solve_closed
+from .._kernels.law_columns import STATIC
 from .._kernels.parts import Contacts, Sizes, Timing
 from .._kernels.vectors import LANES
 from ..arrays import Array
@@ -46,7 +47,7 @@ def forces_of(
     now = np.zeros((count, at.IN_STEP))
     now[:, at.FREE_GAP], now[:, at.FREE_SLIP] = gaps, slips
     constants = np.zeros((count, at.CONTACT_CONSTANTS))
-    constants[:, at.AT_REST] = laws[1][:, 0]
+    constants[:, at.AT_REST] = laws[1][:, STATIC]
     contacts = Contacts(
         *laws,
         columns(side_by_side([constants.ravel()])),
@@ -57,6 +58,6 @@ def forces_of(
         columns(aligned(count * at.SUMS, 1)),
     )
     place, timing = (0, 1) if PLAIN else None, Timing(1, step, solve.tolerance, solve.sweeps)
-    solve_closed(place, contacts, columns(side_by_side([carried.ravel()])), sizes, timing)
+    solve_closed(True if space else None, place, contacts, columns(side_by_side([carried.ravel()])), sizes, timing)
     now = contacts.now.reshape(count, at.IN_STEP)
     return np.asarray(now[:, [at.NORMAL_NOW, at.TANGENTIAL_NOW]])

@@ -240,15 +240,16 @@ class March:
         return sizes.contacts == 1 and not sizes.coupled and not len(self.layout.turning)
 
     @property
-    def kind(self) -> tuple[bool | None, bool | None]:
+    def kind(self) -> tuple[bool | None, bool | None, bool | None]:
         """The arguments of `march` that select the steps."""
-        return (True, None) if self.is_single else (None, True)
+        in_space = self.layout.sizes.space or len(self.layout.turning) > 0
+        return (True, None, None) if self.is_single else (None, True, True if in_space else None)
 
     @property
     def is_compiled(self) -> bool:
         """Whether nothing has to be compiled, or loaded, for a march of this kind."""
         types = tuple(map(numba.typeof, (*self.kind, self.places[0])))
-        return PLAIN or types in [signature[:3] for signature in march.signatures]
+        return PLAIN or types in [signature[:4] for signature in march.signatures]
 
     @property
     def states(self) -> list[State]:

@@ -9,6 +9,7 @@ import numpy as np
 from .._kernels import layout as at
 from .._kernels.contact import SEPARATED, SLIDING, STICKING
 from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
+from .._kernels.law_columns import STATIC
 from .._kernels.pressing import stored_in_one
 from .._kernels.slipping_in_space import ratio_of_state, state_after
 from ..arrays import Array
@@ -208,7 +209,7 @@ class _Start:
             if i + 1 < len(codes) and codes[i + 1] == at.SECOND_TANGENT:
                 inclined = inclined - ratios[i + 1] * compliance[:, 2 * i + 3]
             if inclined[2 * i] > 0.0:
-                compliance[:, 2 * i], codes[i], laws[i, 0] = inclined, at.COULOMB, 0.0
+                compliance[:, 2 * i], codes[i], laws[i, STATIC] = inclined, at.COULOMB, 0.0
             else:
                 ratios[i] = np.nan
         forces = forces_of(gap[closed], slip[closed], compliance, (codes, laws), carried[closed], self.step, solve)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from .._kernels import layout as at
+from .._kernels.law_columns import LAW_COLUMNS, STATIC
 from ..arrays import Array
 from ..bodies.paths import Path
 from ..checks import ArgumentError, at_most
@@ -203,7 +204,7 @@ class ContactBlocks:
 def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
     """Return the contacts as arrays for the march."""
     count = len(arrays.contacts)
-    constants, laws = np.zeros((count, at.CONTACT_CONSTANTS)), np.zeros((count, at.LAW_PARAMETERS))
+    constants, laws = np.zeros((count, at.CONTACT_CONSTANTS)), np.zeros((count, LAW_COLUMNS))
     codes = np.zeros(count, dtype=np.int64)
     rows = np.array([contact.fixed for contact in arrays.contacts])
     paths = tuple(_path_modes(one) for one in arrays.contacts)
@@ -216,7 +217,7 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
         if one.circle is not None:
             constants[i, [at.ALONG, at.ALONG_PHASE]] = one.rate, -one.rate * one.contact.at
         codes[i], laws[i] = law_of_march(one.contact.friction)
-        constants[i, at.AT_REST] = laws[i, 0]
+        constants[i, at.AT_REST] = laws[i, STATIC]
         if one.yields is not None:
             constants[i, at.YIELD_STIFFNESS : at.YIELD_REACH] = one.yields.numbers
         if one.is_second:

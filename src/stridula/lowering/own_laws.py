@@ -8,6 +8,7 @@ import numpy as np
 
 from .._kernels import friction as marched
 from .._kernels import layout as at
+from .._kernels.law_columns import LAW_COLUMNS, NEW_STATE, PARAMETERS, SET_VALUED, STATIC
 from ..arrays import Array
 from ..checks import ArgumentError
 from ..contact import LAWS, FrictionLaw
@@ -44,11 +45,14 @@ def _differences(law: FrictionLaw) -> Iterator[tuple[str, str]]:
     if law.kernel_code not in CODES:
         yield f"have a kernel_code out of {', '.join(CODES)}", repr(law.kernel_code)
         return
-    code, parameters = law_of_march(law)
-    numbers = parameters[None]
+    code, given = CODES[law.kernel_code], law.parameters()
+    if set(given) != set(PARAMETERS[code]):
+        yield f"have the parameters {', '.join(PARAMETERS[code])}", ", ".join(given) or "none"
+        return
+    numbers = law_of_march(law)[1][None]
     for name, own, marches in (
         ("set_valued", law.set_valued, bool(marched.set_valued(code))),
-        ("has_state", law.has_state, code >= at.LUGRE),
+        ("has_state", law.has_state, not SET_VALUED[code]),
         ("state_is_vector", law.state_is_vector, code == at.LUGRE),
     ):
         if own != marches:
@@ -56,7 +60,7 @@ def _differences(law: FrictionLaw) -> Iterator[tuple[str, str]]:
     speeds = law.reach * np.logspace(-DECADES_BELOW, DECADES_ABOVE, SPEEDS)
     ratios = np.array([_ratio(law, code, numbers, speed) for speed in speeds.tolist()])
     yield from _curve(law, speeds, ratios)
-    if law.set_valued and not np.isclose(law.holding, held := numbers[0, 0], rtol=EQUAL):
+    if law.set_valued and not np.isclose(law.holding, held := numbers[0, STATIC], rtol=EQUAL):
         yield f"have the holding ratio {held:.6g}", f"{law.holding:.6g}"
     yield from _slopes(law, speeds, ratios)
     if law.has_state:
@@ -64,10 +68,12 @@ def _differences(law: FrictionLaw) -> Iterator[tuple[str, str]]:
 
 
 def law_of_march(law: FrictionLaw) -> tuple[int, Array]:
-    """Return the code of a law and its parameters, the state of a new contact last."""
-    found, own = np.zeros(at.LAW_PARAMETERS), list(law.parameters().values())
-    found[: len(own)], found[-1] = own, law.state_at_landing
-    return CODES[law.kernel_code], found
+    """Return the code of a law and its row of parameters."""
+    code, row = CODES[law.kernel_code], np.zeros(LAW_COLUMNS)
+    for name, value in law.parameters().items():
+        row[PARAMETERS[code][name]] = value
+    row[NEW_STATE] = law.state_at_landing
+    return code, row
 
 
 def _ratio(law: FrictionLaw, code: int, numbers: Array, speed: float) -> float:
