@@ -12,9 +12,8 @@ import pytest
 import stridula as st
 from stridula._kernels import friction
 from stridula._kernels import layout as at
-from stridula._kernels.law_columns import LAW_COLUMNS, NEW_STATE, PARAMETERS
+from stridula._kernels.law_columns import CODES, LAW_COLUMNS, NEW_STATE, PARAMETERS
 from stridula.contact import LAWS
-from stridula.lowering.own_laws import CODES
 from stridula.scenarios.schema import json_schema
 
 NAN, INF = float("nan"), float("inf")
@@ -136,8 +135,8 @@ def test_every_law_is_tested():
 def test_declared_properties_of_laws_agree_with_the_march(law):
     code = getattr(at, law.kernel_code)
     assert law.set_valued == friction.set_valued.py_func(code)
-    assert set(law.parameters()) == set(PARAMETERS[code])
-    assert max(PARAMETERS[code].values()) < NEW_STATE < LAW_COLUMNS
+    assert set(law.parameters()) == set(PARAMETERS[law.kernel_code])
+    assert max(PARAMETERS[law.kernel_code].values()) < NEW_STATE < LAW_COLUMNS
     assert law.has_state == (not law.set_valued) == bool(law.state_units)
     slow, fast = law.coefficient_at(np.array([0.01, 0.1]))
     assert law.depends_on_speed == (slow != fast)

@@ -1,9 +1,10 @@
-"""Columns of the parameters of a law of friction, and whether it sticks exactly.
+"""Columns of the parameters of laws of friction, and the laws that stick exactly.
 
-The names in `PARAMETERS` are those of the laws' own parameters; several laws share columns.
+Laws have the names of their codes in `layout`, parameters those of the laws' own `parameters`. Several laws share
+columns. The kernels do not depend on the order of the codes.
 """
 
-from .layout import AGING, COULOMB, LINEAR_WEAKENING, LUGRE, SLIP, STATIC_KINETIC, STRIBECK
+from . import layout as at
 
 # Set-valued laws and bristles: the ratio at rest; those that weaken; bristles.
 STATIC, KINETIC, VELOCITY, EXPONENT, VISCOUS = range(5)
@@ -16,26 +17,19 @@ NEW_STATE = 7
 LAW_COLUMNS = 8
 
 _WEAKENING = {"static": STATIC, "kinetic": KINETIC, "velocity": VELOCITY}
-_RATE_AND_STATE = {
-    "reference": REFERENCE,
-    "a": DIRECT,
-    "b": EVOLVING,
-    "slip_distance": SLIP_DISTANCE,
-    "velocity": REFERENCE_VELOCITY,
-}
+_BRISTLES = {"stiffness": BRISTLE_STIFFNESS, "damping": BRISTLE_DAMPING, "viscous": BRISTLE_VISCOUS}
+_AGES = {"slip_distance": SLIP_DISTANCE, "velocity": REFERENCE_VELOCITY}
+_RATE_AND_STATE = {"reference": REFERENCE, "a": DIRECT, "b": EVOLVING, **_AGES}
 PARAMETERS = {
-    COULOMB: {"coefficient": STATIC},
-    STATIC_KINETIC: {"static": STATIC, "kinetic": KINETIC},
-    STRIBECK: {**_WEAKENING, "exponent": EXPONENT, "viscous": VISCOUS},
-    LINEAR_WEAKENING: {"static": STATIC, "slope": SLOPE, "kinetic": FLOOR, "end": END},
-    LUGRE: {
-        **_WEAKENING,
-        "stiffness": BRISTLE_STIFFNESS,
-        "damping": BRISTLE_DAMPING,
-        "viscous": BRISTLE_VISCOUS,
-    },
-    AGING: _RATE_AND_STATE,
-    SLIP: _RATE_AND_STATE,
+    "COULOMB": {"coefficient": STATIC},
+    "STATIC_KINETIC": {"static": STATIC, "kinetic": KINETIC},
+    "STRIBECK": {**_WEAKENING, "exponent": EXPONENT, "viscous": VISCOUS},
+    "LINEAR_WEAKENING": {"static": STATIC, "slope": SLOPE, "kinetic": FLOOR, "end": END},
+    "LUGRE": {**_WEAKENING, **_BRISTLES},
+    "AGING": _RATE_AND_STATE,
+    "SLIP": _RATE_AND_STATE,
 }
+CODES = {name: getattr(at, name) for name in PARAMETERS}
 # Whether a law sticks exactly, by its code.
-SET_VALUED = tuple(code in (COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING) for code in sorted(PARAMETERS))
+_STICKS = {"COULOMB", "STATIC_KINETIC", "STRIBECK", "LINEAR_WEAKENING"}
+SET_VALUED = tuple(name in _STICKS for name in sorted(CODES, key=CODES.__getitem__))

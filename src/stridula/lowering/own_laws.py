@@ -8,17 +8,12 @@ import numpy as np
 
 from .._kernels import friction as marched
 from .._kernels import layout as at
-from .._kernels.law_columns import LAW_COLUMNS, NEW_STATE, PARAMETERS, SET_VALUED, STATIC
+from .._kernels.law_columns import CODES, LAW_COLUMNS, NEW_STATE, PARAMETERS, SET_VALUED, STATIC
 from ..arrays import Array
 from ..checks import ArgumentError
 from ..contact import LAWS, FrictionLaw
 from ..contact.linearised import Linearised
 
-# Codes of the laws of the march by name.
-CODES = {
-    name: getattr(at, name)
-    for name in ("COULOMB", "STATIC_KINETIC", "STRIBECK", "LINEAR_WEAKENING", "LUGRE", "AGING", "SLIP")
-}
 # Slip speeds at which formulas are compared, over those up to which a curve is characteristic.
 DECADES_BELOW, DECADES_ABOVE, SPEEDS = 8, 3, 441
 # Slip [m] after which a contact has forgotten its first state.
@@ -45,9 +40,9 @@ def _differences(law: FrictionLaw) -> Iterator[tuple[str, str]]:
     if law.kernel_code not in CODES:
         yield f"have a kernel_code out of {', '.join(CODES)}", repr(law.kernel_code)
         return
-    code, given = CODES[law.kernel_code], law.parameters()
-    if set(given) != set(PARAMETERS[code]):
-        yield f"have the parameters {', '.join(PARAMETERS[code])}", ", ".join(given) or "none"
+    code, given, needed = CODES[law.kernel_code], law.parameters(), PARAMETERS[law.kernel_code]
+    if set(given) != set(needed):
+        yield f"have the parameters {', '.join(needed)}", ", ".join(given) or "none"
         return
     numbers = law_of_march(law)[1][None]
     for name, own, marches in (
@@ -71,7 +66,7 @@ def law_of_march(law: FrictionLaw) -> tuple[int, Array]:
     """Return the code of a law and its row of parameters."""
     code, row = CODES[law.kernel_code], np.zeros(LAW_COLUMNS)
     for name, value in law.parameters().items():
-        row[PARAMETERS[code][name]] = value
+        row[PARAMETERS[law.kernel_code][name]] = value
     row[NEW_STATE] = law.state_at_landing
     return code, row
 
