@@ -18,7 +18,7 @@ import numpy as np
 from against_siconos import PEER
 from ratios import arguments, sized
 from stridula._kernels import layout as at
-from stridula._kernels.law_columns import LAW_COLUMNS
+from stridula._kernels.law_columns import LAW_COLUMNS, STATIC
 from stridula.integration.contact_solve import GaussSeidel
 from stridula.integration.forces import forces_of
 
@@ -52,7 +52,7 @@ def here(case: Case) -> np.ndarray:
     where = (4 * np.arange(count)[:, None] + [0, 1, 3]).ravel()
     pairs[np.ix_(where, where)] = compliance
     laws = np.zeros((2 * count, LAW_COLUMNS))
-    laws[:, 0] = np.repeat(friction, 2)
+    laws[:, STATIC] = np.repeat(friction, 2)
     gaps, slips = np.zeros(2 * count), free.reshape(-1, 3)[:, 1:].ravel()
     gaps[::2] = free[::3]
     codes = np.tile([at.COULOMB, at.SECOND_TANGENT], count)

@@ -201,7 +201,6 @@ BRISTLES = st.LuGre(0.6, 0.4, 0.02, 2e4, 20.0, 0.1)
 AGING = st.RateAndState(0.5, 0.01, 0.015, 1e-4, 1e-3)
 
 
-# Name -> function that makes the system, and the step [s].
 def block_on_a_plane() -> st.System:
     """A block in space that slides along one side."""
     size, steel = (0.04, 0.01, 0.02), st.Material(2.1e11, 7800.0, 0.3)
@@ -210,6 +209,7 @@ def block_on_a_plane() -> st.System:
     return st.System(contact, [st.Force(block.at("top"), y=-10.0)])
 
 
+# Name -> function that makes the system, and the step [s].
 SYSTEMS = {
     "mass on a belt, static and kinetic": (lambda: oscillator(st.StaticKinetic(0.6, 0.4)), 2e-4),
     "mass on a belt, weakening linearly": (lambda: oscillator(st.LinearWeakening(0.6, 1.5, 0.3)), 2e-4),

@@ -5,6 +5,7 @@ whole lines of it. Double precision; the compiler for the card decides which pro
 """
 
 from types import FunctionType
+from typing import Any
 
 from numba import cuda
 
@@ -53,4 +54,4 @@ def _each(single, several, space):
 
 
 KINDS = (True, None, None), (None, True, None), (None, True, True)
-marches = {kind: _each(*kind) for kind in KINDS}
+marches: dict[tuple[bool | None, ...], Any] = {kind: _each(*kind) for kind in KINDS}

@@ -108,7 +108,6 @@ class CudaMarch(March):
         modes, paths, contacts, turning, carried, probes = self.there
         parts = Parts(self.layout.sizes, self.timing, modes, paths, contacts, turning, carried, imposed, probes, filled)
         grid = -(-self.runs // self.threads_per_block)
-        kinds: dict[Any, Any] = marches
-        kinds[self.kind][grid, self.threads_per_block](self.runs, parts)
+        marches[self.kind][grid, self.threads_per_block](self.runs, parts)
         for array, output in zip(filled, records, strict=True):
             array.copy_to_host(output)

@@ -58,6 +58,6 @@ def forces_of(
         columns(aligned(count * at.SUMS, 1)),
     )
     place, timing = (0, 1) if PLAIN else None, Timing(1, step, solve.tolerance, solve.sweeps)
-    solve_closed(True if space else None, place, contacts, columns(side_by_side([carried.ravel()])), sizes, timing)
+    solve_closed(space or None, place, contacts, columns(side_by_side([carried.ravel()])), sizes, timing)
     now = contacts.now.reshape(count, at.IN_STEP)
     return np.asarray(now[:, [at.NORMAL_NOW, at.TANGENTIAL_NOW]])

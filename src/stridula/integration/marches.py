@@ -243,7 +243,7 @@ class March:
     def kind(self) -> tuple[bool | None, bool | None, bool | None]:
         """The arguments of `march` that select the steps."""
         in_space = self.layout.sizes.space or len(self.layout.turning) > 0
-        return (True, None, None) if self.is_single else (None, True, True if in_space else None)
+        return (True, None, None) if self.is_single else (None, True, in_space or None)
 
     @property
     def is_compiled(self) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 
 from .._kernels import friction as marched
 from .._kernels import layout as at
-from .._kernels.law_columns import CODES, LAW_COLUMNS, NEW_STATE, PARAMETERS, SET_VALUED, STATIC
+from .._kernels.law_columns import CODES, LAW_COLUMNS, NEW_STATE, PARAMETERS, STATIC
 from ..arrays import Array
 from ..checks import ArgumentError
 from ..contact import LAWS, FrictionLaw
@@ -47,7 +47,7 @@ def _differences(law: FrictionLaw) -> Iterator[tuple[str, str]]:
     numbers = law_of_march(law)[1][None]
     for name, own, marches in (
         ("set_valued", law.set_valued, bool(marched.set_valued(code))),
-        ("has_state", law.has_state, not SET_VALUED[code]),
+        ("has_state", law.has_state, not marched.set_valued(code)),
         ("state_is_vector", law.state_is_vector, code == at.LUGRE),
     ):
         if own != marches:
