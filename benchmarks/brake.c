@@ -197,6 +197,28 @@ static inline void slips_under(const Alone *one, double c, double s, double norm
     *swerve = one->slips[1] + w[6] * normal - (c * w[7] + s * w[8]) * tangential;
 }
 
+/* Share of the last two slips in the velocity along which friction acts; none late, or where a slip begins against them. */
+static inline void carry_on(const Alone *one, double late, double c, double s, double *carried_on)
+{
+    for (int k = 0; k < 2; k++)
+        carried_on[k] = 6.0 * one->last[k] + one->earlier[k];
+    if (late > 0.0 || (one->was < 2 && c * carried_on[0] + s * carried_on[1] <= 0.0))
+        carried_on[0] = carried_on[1] = 0.0;
+}
+
+/* Whether friction along the last slip, of a size and a direction, reverses it with only rounding across. */
+static int turns_on_its_line(const Alone *one, double size, double c, double s)
+{
+    const double *w = one->w, clear = w[0] - one->mu * (c * w[1] + s * w[2]);
+    if (size == 0.0 || clear <= 0.0)
+        return 0;
+    const double normal = -one->gap / clear;
+    double slip, swerve;
+    slips_under(one, c, s, normal, one->mu * normal, &slip, &swerve);
+    const double farther = c * slip + s * swerve, across = c * swerve - s * slip;
+    return farther < 0.0 && fabs(across) <= 1e-6 * (size - farther);
+}
+
 /* The direction of friction of a contact that slides, by Newton's method; whether it is found. */
 static int slides_along(const Alone *one, const double *carried_on, double *c_found, double *s_found)
 {
@@ -237,10 +259,12 @@ static int slides_along(const Alone *one, const double *carried_on, double *c_fo
 }
 
 /* The same by the secant method within a bracket, where Newton's finds none, or where the contact may stick. */
-static int searched(const Alone *one, int may_hold, double late, const double *carried_on, double *c_found, double *s_found,
-                    double *normal, double *tangential)
+static int searched(const Alone *one, int may_hold, double late, double *c_found, double *s_found, double *normal,
+                    double *tangential)
 {
     const double first = *c_found, second = *s_found, *w = one->w;
+    double carried_on[2];
+    carry_on(one, late, first, second, carried_on);
     double turn = 0.0, low = -1e300, high = 1e300, turn_before = 0.0, across_before = 0.0, c = first, s = second;
     int status = 0, was = late > 0.0 ? 0 : one->was;
     for (int trial = 0; trial < SEARCHES; trial++) {
@@ -288,9 +312,7 @@ static Found solve_in_space(const Alone *one, double late)
     const double *w = one->w, gap = one->gap, mu = one->mu;
     if (gap >= 0.0)
         return (Found){0.0, 0.0, 0.0, 0};
-    double carried_on[2] = {0.0, 0.0}, c = 1.0, s = 0.0, held = 0.0, slip, swerve;
-    for (int k = 0; k < 2 && late == 0.0; k++)
-        carried_on[k] = 6.0 * one->last[k] + one->earlier[k];
+    double c = 1.0, s = 0.0, held = 0.0, slip, swerve, normal, tangential;
     {
         const double p = w[4] - w[3] * w[1] / w[0], q = w[5] - w[3] * w[2] / w[0], r = w[7] - w[6] * w[1] / w[0];
         const double t = w[8] - w[6] * w[2] / w[0], determinant = p * t - q * r;
@@ -311,24 +333,31 @@ static Found solve_in_space(const Alone *one, double late)
     const int may_hold = held <= mu || mu == 0.0;
     if (!may_hold) {
         const double size = sqrt(one->guess[0] * one->guess[0] + one->guess[1] * one->guess[1]);
-        double near = size > 0.0 ? one->guess[0] / size : c, nearly = size > 0.0 ? one->guess[1] / size : s;
+        double near = size > 0.0 ? one->guess[0] / size : c, nearly = size > 0.0 ? one->guess[1] / size : s, carried_on[2];
+        carry_on(one, late, c, s, carried_on);
         if (slides_along(one, carried_on, &near, &nearly)) {
-            const double normal = -gap / (w[0] - mu * (near * w[1] + nearly * w[2]));
+            normal = -gap / (w[0] - mu * (near * w[1] + nearly * w[2]));
             slips_under(one, near, nearly, normal, mu * normal, &slip, &swerve);
-            if (one->was < 2 || near * slip + nearly * swerve >= 0.0)
+            const int turns = late == 0.0 && near * one->last[0] + nearly * one->last[1] < 0.0;
+            if (one->was < 2 || (near * slip + nearly * swerve >= 0.0 && !turns))
                 return (Found){normal, mu * normal * near, mu * normal * nearly, 2};
             c = near;
             s = nearly;
         }
     }
-    double normal, tangential;
-    int status = searched(one, may_hold, late, carried_on, &c, &s, &normal, &tangential);
-    if (one->was == 2 && late == 0.0 && status == 2) {
+    const double size = sqrt(one->last[0] * one->last[0] + one->last[1] * one->last[1]);
+    const double along = size > 0.0 ? one->last[0] / size : 1.0, across = size > 0.0 ? one->last[1] / size : 0.0;
+    const int slid = one->was == 2 && late == 0.0;
+    if (slid && turns_on_its_line(one, size, along, across)) {
+        const int status = along_direction(one, along, across, one->was, &normal, &tangential);
+        return (Found){normal, tangential * along, tangential * across, status};
+    }
+    int status = searched(one, may_hold, late, &c, &s, &normal, &tangential);
+    if (slid && status == 2 && size > 0.0) {
         slips_under(one, c, s, normal, tangential, &slip, &swerve);
-        const double size = sqrt(one->last[0] * one->last[0] + one->last[1] * one->last[1]);
-        if (size > 0.0 && tangential * (c * slip + s * swerve) < 0.0) {
-            c = one->last[0] / size;
-            s = one->last[1] / size;
+        if (tangential * (c * slip + s * swerve) < 0.0) {
+            c = along;
+            s = across;
             status = along_direction(one, c, s, one->was, &normal, &tangential);
         }
     }

@@ -12,11 +12,11 @@ from .block_rows import COMPLIANCE, DISPLACEMENT
 from .contact import SLIDING, STICKING
 from .direct import solve_states
 from .faces import displace, displace_freely, displace_in_space, own_compliance
-from .lanes import anywhere, choose, component, everywhere, held, hold, magnitude, placed
+from .lanes import anywhere, choose, component, everywhere, held, hold, magnitude
 from .modes import ENTRY, OPTIONS, PASTED
 from .solves import carried_by, strayed
 from .space import free_of_own, is_second, put_second
-from .yielding import comes_close, forces_yielding, forces_yielding_in_space, path_of, yields_of
+from .yielding import comes_close, forces_of_any, forces_of_any_in_space, path_of, yields_of
 
 # Sweeps before the first direct solve for the forces of the states found, and between direct solves.
 FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 1, 8
@@ -78,7 +78,7 @@ def forces_of_this(i, gap, slip, w, contacts, carried, let_go, step, run, runs, 
     before = carried_by(carried, i, run, zero)
     yields, path = yields_of(i, contacts.constants, run, zero), path_of(i, carried, run, zero)
     friction = (law, contacts.laws, number, at_rest)
-    normal, tangential, status, jammed, give, beyond = forces_yielding(
+    normal, tangential, status, jammed, give, beyond = forces_of_any(
         (gap, slip, away, w), friction, before, let_go, step, yields, path, zero
     )
     hold(contacts.now, i * at.IN_STEP + at.GIVE, run, give)
@@ -92,7 +92,7 @@ def forces_of_this_in_space(i, contacts, carried, let_go, step, run, runs, zero)
     free, laws = free_of_own(contacts, carried, i, run, runs, zero)
     gap, slips, strays, w, law, number, before = free
     yields, path = yields_of(i, contacts.constants, run, zero), path_of(i, carried, run, zero)
-    normal, first, second, status, jammed, give, beyond = forces_yielding_in_space(
+    normal, first, second, status, jammed, give, beyond = forces_of_any_in_space(
         (gap, slips, strays, w), (law, laws, number), before, let_go, step, yields, path, zero
     )
     hold(contacts.now, i * at.IN_STEP + at.GIVE, run, give)
@@ -100,7 +100,7 @@ def forces_of_this_in_space(i, contacts, carried, let_go, step, run, runs, zero)
     return normal, first, second, status, jammed
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def sweep_once(space, contacts, carried, sizes, step, done, run, runs, zero):
     """Solve contacts that may touch in turn, in runs not `done`; return the changes.
 
@@ -190,14 +190,18 @@ def largest_of(one, other):
     return choose(other > one, other, one)
 
 
-@numba.njit(**PASTED)
-def solve_all(space, contacts, carried, touching, sizes, timing, run, runs, zero):
+@numba.njit(**ENTRY)
+def solve_closed(space, contacts, carried, touching, sizes, timing, run, runs, zero):
     """Solve contacts in turn until no force changes; return the number of sweeps and the error from the changes.
 
-    The error is relative to the largest force. A direct solve helps sweeps that converge slowly with unchanged states.
-    A contact that was held and breaks away may have no consistent state in which it could be held again: it is then let
-    go. Results do not depend on the runs side by side: a run that is done does not change.
+    Runs without any contact `touching` have no forces. The error is relative to the largest force. A direct solve helps
+    sweeps that converge slowly with unchanged states. A contact that was held and breaks away may have no consistent
+    state in which it could be held again: it is then let go. Results do not depend on the runs side by side: a run that
+    is done does not change. Compiled once for the march and for the start.
     """
+    start_from_last(contacts, carried, touching, sizes, run, zero)
+    if not anywhere(touching > 0.5):
+        return zero, zero
     done = choose(touching > 0.5, zero, 1.0)
     rounding = rounding_of_slips(carried, sizes, run, zero)
     made, error, before = zero, choose(touching > 0.5, math.inf, zero), zero + math.inf
@@ -242,11 +246,3 @@ def solve_all(space, contacts, carried, touching, sizes, timing, run, runs, zero
                 broke = held(contacts.now, here + at.BROKE, run, zero)
                 hold(contacts.now, here + at.LET_GO, run, choose(broke > 0.5, 1.0, zero + LATE))
     return made, error
-
-
-@numba.njit(**ENTRY)
-def solve_closed(space, place, contacts, carried, sizes, timing):
-    """Solve the contacts of one run like a step of the march."""
-    zero, run, runs = placed(place)
-    start_from_last(contacts, carried, 1.0, sizes, run, zero)
-    return solve_all(space, contacts, carried, 1.0, sizes, timing, run, runs, zero)

@@ -18,7 +18,7 @@ from .bookkeeping import (
     store_in,
 )
 from .circles import convected
-from .contacts import solve_all, start_from_last
+from .contacts import solve_closed
 from .faces import own_compliance
 from .friction import set_valued
 from .lanes import anywhere, choose, component, held, hold
@@ -57,10 +57,7 @@ def solve_several(space, parts, run, runs, zero):
         closed = choose(held(state.carried, i * at.CARRIED + at.STATUS, run, zero) > 0.5, 1.0, closed)
     if sizes.paths and (anywhere(touching > 0.5) or anywhere(closed > 0.5)):
         soften(parts.modes, parts.paths, contacts, sizes, run, zero)
-    start_from_last(contacts, state.carried, touching, sizes, run, zero)
-    made, error = zero, zero
-    if anywhere(touching > 0.5):
-        made, error = solve_all(space, contacts, state.carried, touching, sizes, timing, run, runs, zero)
+    made, error = solve_closed(space, contacts, state.carried, touching, sizes, timing, run, runs, zero)
     most = held(state.energies, at.ITERATIONS, run, zero)
     hold(state.energies, at.ITERATIONS, run, choose(made > most, made, most))
     add(state.energies, at.UNSOLVED, run, choose(error <= timing.tolerance, zero, 1.0), zero)

@@ -10,7 +10,7 @@ from .modes import PASTED
 from .recording import keep_probes_at
 from .solves import carried_by, strayed
 from .trying import try_one
-from .yielding import comes_close, forces_yielding, path_of, yields_of
+from .yielding import comes_close, forces_of_any, path_of, yields_of
 
 
 @numba.njit(**PASTED)
@@ -25,7 +25,7 @@ def solve_single(free, contacts, carried, w, timing, run, zero):
     away, before = strayed(carried, 0, run, zero), carried_by(carried, 0, run, zero)
     yields, path = yields_of(0, contacts.constants, run, zero), path_of(0, carried, run, zero)
     friction = (law, contacts.laws, run, at_rest)
-    normal, tangential, status, jammed, give, beyond = forces_yielding(
+    normal, tangential, status, jammed, give, beyond = forces_of_any(
         (gap, slip, away, w), friction, before, zero, timing.step, yields, path, zero
     )
     hold(contacts.now, at.GIVE, run, give)

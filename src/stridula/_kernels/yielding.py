@@ -4,7 +4,7 @@ import numba
 
 from . import layout as at
 from .lanes import anywhere, choose, everywhere, held, magnitude
-from .modes import OPTIONS
+from .modes import INNER, OPTIONS, PASTED
 from .pressing import press, share_of
 from .solves import forces_of_one
 from .space import solve_in_space
@@ -67,23 +67,33 @@ def is_settled(reached, normal, give, beyond, w_nn, gap, yields):
     return choose(yields[0] > 0.0, choose(near, 1.0, 0.0), 1.0)
 
 
-@numba.njit(**OPTIONS)
-def forces_yielding(free, friction, before, let_go, step, yields, path, zero):
+@numba.njit(**PASTED)
+def forces_of_any(free, friction, before, let_go, step, yields, path, zero):
     """Return the result of `forces_of_one` for a contact that may yield, its give and the indentation beyond that.
 
-    Newton's method for the indentation, from that without force; a rigid contact is solved once. `free` are gap, slip,
-    distance of a stick from its anchor, compliance; `friction` the law, all laws, the number among these and the ratio
-    at rest; `path` the indentations of the last three steps.
+    `free` are gap, slip, distance of a stick from its anchor, compliance; `friction` the law, all laws, the number
+    among these and the ratio at rest; `path` the indentations of the last three steps.
+    """
+    if yields_anywhere(yields):
+        return forces_yielding(free, friction, before, let_go, step, yields, path, zero)
+    gap, slip, away, w = free
+    law, laws, number, at_rest = friction
+    one = forces_of_one(gap, slip, away, w, law, laws, number, at_rest, before, let_go, step, zero)
+    return one[0], one[1], one[2], one[3], zero, zero
+
+
+@numba.njit(**INNER)
+def forces_yielding(free, friction, before, let_go, step, yields, path, zero):
+    """Do `forces_of_any` for a contact that yields, by Newton's method for the indentation, from that without force.
+
+    Runs with a rigid contact beside it are solved once. It is called, not inlined: rigid contacts do not pay for it.
     """
     gap, slip, away, w = free
     law, laws, number, at_rest = friction
     done = zero
     normal, tangential, status, jammed, give, beyond = zero, zero, zero, zero, zero, zero
-    share, softer, further = zero, zero, zero
-    soft = yields_anywhere(yields)
-    if soft:
-        share = share_of(-gap, path, yields)
-        softer, further = give_of(-gap, path, yields, share, w[0], step, zero)
+    share = share_of(-gap, path, yields)
+    softer, further = give_of(-gap, path, yields, share, w[0], step, zero)
     for _ in range(STEPS):
         one = forces_of_one(
             gap + further,
@@ -103,8 +113,6 @@ def forces_yielding(free, friction, before, let_go, step, yields, path, zero):
         normal, tangential = choose(goes_on, one[0], normal), choose(goes_on, one[1], tangential)
         status, jammed = choose(goes_on, one[2], status), choose(goes_on, one[3], jammed)
         give, beyond = choose(goes_on, softer, give), choose(goes_on, further, beyond)
-        if not soft:
-            break
         reached = -(gap + w[0] * normal - w[1] * tangential)
         softer, further = give_of(reached, path, yields, share, w[0], step, zero)
         done = choose(goes_on, is_settled(reached, normal, softer, further, w[0], gap, yields), 1.0)
@@ -113,18 +121,26 @@ def forces_yielding(free, friction, before, let_go, step, yields, path, zero):
     return normal, tangential, status, jammed, give, beyond
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
+def forces_of_any_in_space(free, friction, before, let_go, step, yields, path, zero):
+    """Do `forces_of_any` for a contact in space, as `solve_in_space`."""
+    if yields_anywhere(yields):
+        return forces_yielding_in_space(free, friction, before, let_go, step, yields, path, zero)
+    gap, slips, strays, w = free
+    law, laws, number = friction
+    one = solve_in_space(gap, slips, strays, w, law, laws, number, before, let_go, step)
+    return one[0], one[1], one[2], one[3], one[4], zero, zero
+
+
+@numba.njit(**INNER)
 def forces_yielding_in_space(free, friction, before, let_go, step, yields, path, zero):
-    """Do `forces_yielding` for a contact in space, as `solve_in_space`."""
+    """Do `forces_yielding` for a contact in space."""
     gap, slips, strays, w = free
     law, laws, number = friction
     done = zero
     normal, first, second, status, jammed, give, beyond = zero, zero, zero, zero, zero, zero, zero
-    share, softer, further = zero, zero, zero
-    soft = yields_anywhere(yields)
-    if soft:
-        share = share_of(-gap, path, yields)
-        softer, further = give_of(-gap, path, yields, share, w[0], step, zero)
+    share = share_of(-gap, path, yields)
+    softer, further = give_of(-gap, path, yields, share, w[0], step, zero)
     for _ in range(STEPS):
         softened = (w[0] + softer, w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8])
         one = solve_in_space(gap + further, slips, strays, softened, law, laws, number, before, let_go, step)
@@ -136,8 +152,6 @@ def forces_yielding_in_space(free, friction, before, let_go, step, yields, path,
         )
         status, jammed = choose(goes_on, one[3], status), choose(goes_on, one[4], jammed)
         give, beyond = choose(goes_on, softer, give), choose(goes_on, further, beyond)
-        if not soft:
-            break
         reached = -(gap + w[0] * normal - w[1] * first - w[2] * second)
         softer, further = give_of(reached, path, yields, share, w[0], step, zero)
         done = choose(goes_on, is_settled(reached, normal, softer, further, w[0], gap, yields), 1.0)

@@ -8,6 +8,8 @@ from .._kernels import layout as at
 from .._kernels.contacts import solve_closed
 from .._kernels.law_columns import STATIC
 from .._kernels.parts import Contacts, Sizes, Timing
+from .._kernels.slipping import STICKING
+from .._kernels.solves import solve_one_run
 from .._kernels.vectors import LANES
 from ..arrays import Array
 from ..lowering.packing import PLAIN, aligned, columns, compliance_in_blocks, room_to_solve, side_by_side
@@ -41,6 +43,8 @@ def forces_of(
         Settings of the simultaneous solution.
     """
     count = len(gaps)
+    if count == 1:
+        return _force_of_one(float(gaps[0]), float(slips[0]), compliance, laws, carried[0], step)
     per_block = 1 if PLAIN else LANES
     space = bool((laws[0] == at.SECOND_TANGENT).any())
     sizes = Sizes(0, 0, per_block, count, -(-2 * count // per_block), 0, False, False, space)
@@ -57,7 +61,20 @@ def forces_of(
         columns(side_by_side([now.ravel()])),
         columns(aligned(count * at.SUMS, 1)),
     )
-    place, timing = (0, 1) if PLAIN else None, Timing(1, step, solve.tolerance, solve.sweeps)
-    solve_closed(space or None, place, contacts, columns(side_by_side([carried.ravel()])), sizes, timing)
+    timing, touching = Timing(1, step, solve.tolerance, solve.sweeps), 1.0
+    carried = columns(side_by_side([carried.ravel()]))
+    solve_closed(space or None, contacts, carried, touching, sizes, timing, 0, 1, 0.0)
     now = contacts.now.reshape(count, at.IN_STEP)
     return np.asarray(now[:, [at.NORMAL_NOW, at.TANGENTIAL_NOW]])
+
+
+def _force_of_one(
+    gap: float, slip: float, compliance: Array, laws: tuple[Array, Array], carried: Array, step: float
+) -> Array:
+    """Return the forces of a single contact, without the solution of several, which would have to be compiled first."""
+    away = carried[at.MATERIAL] - carried[at.ANCHOR] if carried[at.STATUS] == STICKING else 0.0
+    before = (at.STATUS, at.LAST_SLIP, at.EARLIER_SLIP, at.FRICTION_STATE)
+    before += (at.LAST_NORMAL, at.LAST_TANGENTIAL, at.PAST_RATIO)
+    was, w = tuple(float(carried[one]) for one in before), tuple(map(float, compliance.ravel()))
+    normal, tangential, _, _ = solve_one_run(gap, slip, float(away), w, int(laws[0][0]), laws[1], 0, was, 0.0, step)
+    return np.array([[normal, tangential]])
