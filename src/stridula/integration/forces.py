@@ -73,8 +73,8 @@ def _force_of_one(
 ) -> Array:
     """Return the forces of a single contact, without the solution of several, which would have to be compiled first."""
     away = carried[at.MATERIAL] - carried[at.ANCHOR] if carried[at.STATUS] == STICKING else 0.0
-    before = (at.STATUS, at.LAST_SLIP, at.EARLIER_SLIP, at.FRICTION_STATE)
-    before += (at.LAST_NORMAL, at.LAST_TANGENTIAL, at.PAST_RATIO)
+    slips, forces = (at.LAST_SLIP, at.EARLIER_SLIP), (at.LAST_NORMAL, at.LAST_TANGENTIAL)
+    before = (at.STATUS, *slips, at.FRICTION_STATE, *forces, at.PAST_RATIO)
     was, w = tuple(float(carried[one]) for one in before), tuple(map(float, compliance.ravel()))
     normal, tangential, _, _ = solve_one_run(gap, slip, float(away), w, int(laws[0][0]), laws[1], 0, was, 0.0, step)
     return np.array([[normal, tangential]])
