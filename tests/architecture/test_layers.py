@@ -115,7 +115,18 @@ def test_only_lowering_and_integration_see_the_kernels():
 
 
 def test_kernels_import_only_numpy_numba_and_the_standard_library():
-    allowed = {"numpy", "numba", "llvmlite", "inspect", "math", "operator", "types", "typing", "stridula"}
+    allowed = {
+        "numpy",
+        "numba",
+        "llvmlite",
+        "collections",
+        "inspect",
+        "math",
+        "operator",
+        "types",
+        "typing",
+        "stridula",
+    }
 
     def other(path: Path) -> set[str]:
         own = {name for name in imports(path) if name.startswith("stridula")}

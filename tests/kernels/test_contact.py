@@ -10,6 +10,7 @@ from hypothesis import strategies as some
 from kernels.twin import contact_states
 from stridula._kernels import layout, solves
 from stridula._kernels.contact import solve_contact
+from stridula._kernels.contact_values import Before, Compliance
 from stridula._kernels.law_columns import LAW_COLUMNS
 
 SEPARATED, STICKING, SLIDING = 0, 1, 2
@@ -36,8 +37,8 @@ def compliance(turn, flat):
 def coulomb(gap, slip, w, mu, last_slip=0.0):
     """The kernel's solve under Coulomb's law, of a contact that slid by `last_slip` in the step before."""
     laws = np.array([[mu] + [0.0] * (LAW_COLUMNS - 1)])
-    before = (float(SLIDING if last_slip else SEPARATED), last_slip, last_slip, 0.0, 0.0, 0.0, 0.0)
-    return solve_contact(gap, slip, 0.0, tuple(w.ravel()), layout.COULOMB, laws, 0, before, False, 1.0)
+    before = Before(float(SLIDING if last_slip else SEPARATED), last_slip, last_slip, 0.0, 0.0, 0.0, 0.0)
+    return solve_contact(gap, slip, 0.0, Compliance(*w.ravel()), layout.COULOMB, laws, 0, before, False, 1.0)
 
 
 def solve(gap, slip, w, mu, last_slip=0.0):

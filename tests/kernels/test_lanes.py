@@ -16,6 +16,7 @@ from stridula._kernels.lanes import (
     lane,
     load,
     magnitude,
+    placed,
     read,
     spread,
     store,
@@ -93,24 +94,25 @@ def test_as_plain_python_everything_is_a_number():
     assert lanes.whole(-0.5) == -1.0
     assert not lanes.everywhere(1.0 < 0.0)
     rows = np.zeros((2, 3, 4))
-    lanes.store(rows, 1, 2, 3, 6.0)
-    assert rows[1, 2, 3] == lanes.load(rows, 1, 2, 3) == 6.0
+    runs = lanes.placed((3, 4))
+    lanes.store(rows, 1, 2, runs, 6.0)
+    assert rows[1, 2, 3] == lanes.load(rows, 1, 2, runs) == 6.0
 
 
 @numba.njit
 def multiples_of_one_run(theta, from_zero, count, rows):
-    set_multiples(theta, from_zero, count, rows, 0, 0, 0)
+    set_multiples(theta, from_zero, count, rows, 0, 0, placed(None))
 
 
 @numba.njit
 def multiples_of_eight_runs(thetas, from_zero, count, rows):
-    set_multiples(read(thetas, 0, 0, spread(0.0)), from_zero, count, rows, 0, 0, 0)
+    set_multiples(read(thetas, 0, 0, spread(0.0)), from_zero, count, rows, 0, 0, placed(True))
 
 
 @numba.njit
 def copied(rows, out):
     for k in range(rows.shape[0]):
-        store(out, k, 0, 0, load(rows, k, 0, 0))
+        store(out, k, 0, placed(True), load(rows, k, 0, placed(True)))
 
 
 @pytest.mark.parametrize("theta", [1e-9, 1e-3, 0.7, np.pi / 2, 3.0, np.pi - 1e-9])

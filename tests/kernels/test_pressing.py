@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from stridula._kernels.contact_values import Indentations, Yielding
 from stridula._kernels.pressing import between, press_on_path, press_one, quotient, share_of_quotient
 
 STEP = 1e-5
@@ -68,7 +69,7 @@ def drawn(rng: np.random.Generator) -> tuple[tuple[float, float, float], tuple[f
 def test_the_force_is_the_mean_along_the_path(seed):
     path, numbers = drawn(np.random.default_rng(seed))
     known = mean_on_path(*path, numbers)
-    found, _ = press_on_path(*path, (*numbers, 0.0), STEP)
+    found, _ = press_on_path(*path, Yielding(*numbers, 0.0), STEP)
     # The quadrature has four points in each piece; the largest force on the path is the scale.
     largest = numbers[0] * max(*path, 0.0) ** numbers[1]
     assert found == pytest.approx(known, rel=2e-3, abs=2e-4 * largest)
@@ -80,12 +81,12 @@ def test_the_slope_is_that_of_the_force(seed, share):
     rng = np.random.default_rng(seed)
     (x, now, before), numbers = drawn(rng)
     earlier = before + 1e-7 * rng.normal()
-    yields, change = (*numbers, 0.0), 1e-11
+    yields, change = Yielding(*numbers, 0.0), 1e-11
 
     def force(at: float) -> float:
-        return press_one(at, (now, before, earlier), yields, share, STEP)[0]
+        return press_one(at, Indentations(now, before, earlier), yields, share, STEP)[0]
 
-    _, slope = press_one(x, (now, before, earlier), yields, share, STEP)
+    _, slope = press_one(x, Indentations(now, before, earlier), yields, share, STEP)
     around = (force(x + change) - force(x - change)) / (2.0 * change)
     scale = numbers[0] * numbers[1] * max(x, now, before, 1e-9) ** (numbers[1] - 1.0) + numbers[2] / STEP
     assert slope == pytest.approx(around, rel=5e-3, abs=5e-3 * scale)
@@ -99,16 +100,16 @@ def test_the_damping_is_corrected_by_the_third_difference(seed):
     path = (*(one + 2e-6 * rng.random() for one in path), 1e-6 * rng.normal() + 1e-6)
     braked = numbers[2] + numbers[3] * numbers[0] * max(path[1], 0.0) ** numbers[1]
     reach = float(rng.choice([0.0, 0.1, 0.4, 1.0])) * STEP / max(braked, 1e-30)
-    found, _ = press_one(path[0], path[1:], (*numbers, reach), 0.0, STEP)
+    found, _ = press_one(path[0], Indentations(*path[1:]), Yielding(*numbers, reach), 0.0, STEP)
     largest = numbers[0] * max(*path[:3], 0.0) ** numbers[1]
     assert found == pytest.approx(with_damping_corrected(path, numbers, reach), rel=2e-3, abs=3e-4 * largest)
 
 
 def test_the_force_is_continuous_where_damping_begins_to_pull():
     """The correction fades where the contact ceases to press, so that a small change of x never changes it much."""
-    yields, deep = (1e6, 1.0, 100.0, 0.0, 0.0), 1e-6
+    yields, deep = Yielding(1e6, 1.0, 100.0, 0.0, 0.0), 1e-6
     for now, before, earlier in ((1.0, 1.4, 1.9), (0.3, 1.0, 1.4), (1.0, 1.2, 0.2)):
-        path = (deep * now, deep * before, deep * earlier)
+        path = Indentations(deep * now, deep * before, deep * earlier)
         x = np.linspace(-2.0 * deep, 4.0 * deep, 20001)
         forces = np.array([press_one(float(at), path, yields, 0.0, STEP)[0] for at in x])
         steepest = yields[0] + 1.5 * yields[2] / STEP
@@ -129,8 +130,8 @@ def test_the_force_of_a_cubic_motion_is_its_mean_to_fourth_order(numbers):
     for step in (STEP, 0.5 * STEP):
         known = quad(lambda s, h=step: (1.0 - abs(s)) * force(s * h), -1.0, 1.0, points=[0.0], epsrel=1e-12)[0]
         x, now, before, earlier = (float(motion(n * step)) for n in (1, 0, -1, -2))
-        yields = (*numbers, 0.0)
-        errors.append(abs(press_one(x, (now, before, earlier), yields, 0.0, step)[0] - known))
+        yields = Yielding(*numbers, 0.0)
+        errors.append(abs(press_one(x, Indentations(now, before, earlier), yields, 0.0, step)[0] - known))
         without.append(abs(press_on_path(x, now, before, yields, step)[0] - known))
     assert without[0] == pytest.approx(4.0 * without[1], rel=0.1)
     assert errors[0] < without[0] / 20.0
@@ -142,12 +143,12 @@ def largest_root(angle: float, share: float, reach: float) -> float:
 
     Mass and step are one, `angle` is the advance of its vibration in a step, `share` that of the critical damping.
     """
-    yields = (angle**2, 1.0, 2.0 * share * angle, 0.0, reach)
+    yields = Yielding(angle**2, 1.0, 2.0 * share * angle, 0.0, reach)
     of_quotient = share_of_quotient(1.0, 1.0, 1.0, yields)
     deep, change = np.ones(4), 1e-7
 
     def force(path) -> float:
-        return press_one(float(path[0]), tuple(map(float, path[1:])), yields, of_quotient, 1.0)[0]
+        return press_one(float(path[0]), Indentations(*map(float, path[1:])), yields, of_quotient, 1.0)[0]
 
     slopes = [(force(deep + change * one) - force(deep - change * one)) / (2.0 * change) for one in np.eye(4)]
     return float(np.abs(np.roots(np.array([1.0, -2.0, 1.0, 0.0]) + slopes)).max())
@@ -166,7 +167,7 @@ def test_a_linear_spring_that_stays_closed_keeps_its_energy():
     rng = np.random.default_rng(3)
     for _ in range(100):
         before, now, x = 1e-6 * (1.0 + rng.random(3))
-        force, _ = press_on_path(x, now, before, (1e8, 1.0, 0.0, 0.0, 0.0), STEP)
+        force, _ = press_on_path(x, now, before, Yielding(1e8, 1.0, 0.0, 0.0, 0.0), STEP)
         stored = 1e8 * (between(x, now, 1.0) - between(now, before, 1.0))
         assert 0.5 * force * (x - before) == pytest.approx(stored, rel=1e-9, abs=1e-16)
 

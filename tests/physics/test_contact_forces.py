@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 
 import stridula as st
 from stridula._kernels import bookkeeping, contact, contacts, direct, faces, friction, solves
+from stridula._kernels.contact_values import Before, Compliance
 from stridula.verification.prony import exponents
 from stridula.verification.systems import mode_coupling
 from stridula.verification.systems.on_belts import Slider, den_hartog, swing
@@ -99,10 +100,10 @@ def test_reversals_are_of_second_order(frequency, friction, scheme):
 
 def test_the_previous_slip_decides_on_a_reversal():
     """Negative control: the same push on a contact that was open has friction of one sense for the whole step."""
-    w, numbers = (1e-4, 0.0, 0.0, 1e-4), np.array([[0.3] + [0.0] * 7])
+    w, numbers = Compliance(1e-4, 0.0, 0.0, 1e-4), np.array([[0.3] + [0.0] * 7])
     forces = []
     for status in (SLIDING, SEPARATED):
-        before = (float(status), 2e-3, 2e-3, 0.0, 0.0, 0.0)
+        before = Before(float(status), 2e-3, 2e-3, 0.0, 0.0, 0.0, 0.0)
         forces.append(contact.solve_contact.py_func(-1e-3, -1e-3, 0.0, w, 0, numbers, 0, before, False, 1e-2)[1])
     assert forces[1] == pytest.approx(-3.0)
     assert abs(forces[0]) < 2.9

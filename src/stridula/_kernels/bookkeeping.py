@@ -1,198 +1,244 @@
 """Bookkeeping of a contact after a step: shares of its states, anchor, work of its forces, state of its law."""
 
-import numba
+from typing import Any
 
 from . import layout as at
+from .compiled import inlined
 from .contact import SLIDING, STICKING, closed_share, landed_share, stuck_share
+from .contact_values import Before, Compliance, Moved, Touch
 from .friction import set_valued
-from .lanes import anywhere, choose, held, hold, magnitude, read
-from .modes import OPTIONS
+from .lanes import Array, Number, Numbers, Runs, anywhere, choose, held, hold, magnitude, read
+from .parts import Carried, Contacts, Imposed, Timing
 from .pressing import stored_in
 from .solves import anchor_after, carried_by, next_on_way, resting, strayed
 from .yielding import path_of, yields_of
 
 
-@numba.njit(**OPTIONS)
-def add(array, row, run, value, zero):
+@inlined
+def add(array: Array, row: int, runs: Runs, value: Number) -> None:
     """Add to a row."""
-    hold(array, row, run, held(array, row, run, zero) + value)
+    hold(array, row, runs, held(array, row, runs) + value)
 
 
-@numba.njit(**OPTIONS)
-def share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, run, zero):
+@inlined
+def share_states(
+    i: int,
+    touch: Touch,
+    moved: Moved,
+    before: Before,
+    carried: Array,
+    sums: Array,
+    w: Compliance,
+    away: Number,
+    law: int,
+    at_rest: Number,
+    runs: Runs,
+) -> Number:
     """Divide the last step among the states of contact `i` and count this one; return the closed share of this one."""
     base, tally = i * at.CARRIED, i * at.SUMS
     _, _, status, jammed = touch
     free_gap, free_slip, gap, _ = moved
-    was, last_normal, last_tangential = before[0], before[4], before[5]
+    was, last_normal, last_tangential = before.status, before.normal, before.tangential
     stuck, touched = magnitude(was - STICKING) < 0.5, was > 0.5 * STICKING
     apart = status < 0.5 * STICKING
-    closed = held(carried, base + at.CLOSED_SHARE, run, zero)
-    opened = choose(touched, choose(apart, last_normal, zero), zero) > 0.0
+    closed = held(carried, base + at.CLOSED_SHARE, runs)
+    opened = choose(touched, choose(apart, last_normal, runs.zero), runs.zero) > 0.0
     if anywhere(opened):
         # A damped contact ceases to press while it is still indented.
-        above = choose(gap > 0.0, gap, zero)
-        left = closed - 1.0 + closed_share(choose(opened, last_normal, 1.0), last_tangential, above, w[0], w[1])
-        closed = choose(opened, choose(left < 0.0, zero, left), closed)
-    stayed = choose(stuck, closed, zero)
-    slips = choose(stuck, status, zero) > SLIDING - 0.5
+        above = choose(gap > 0.0, gap, runs.zero)
+        left = closed - 1.0 + closed_share(choose(opened, last_normal, 1.0), last_tangential, above, w.nn, w.nt)
+        closed = choose(opened, choose(left < 0.0, runs.zero, left), closed)
+    stayed = choose(stuck, closed, runs.zero)
+    slips = choose(stuck, status, runs.zero) > SLIDING - 0.5
     if law == at.COULOMB and anywhere(slips):
         kept = stuck_share(last_normal, last_tangential, free_gap, free_slip + away, w, at_rest)
         stayed = choose(slips, kept * stayed, stayed)
     elif law != at.COULOMB and set_valued(law):
-        stayed = closed * held(carried, base + at.STUCK_SHARE, run, zero)
-    add(sums, tally + at.STUCK, run, stayed, zero)
-    add(sums, tally + at.SLID, run, closed - stayed, zero)
+        stayed = closed * held(carried, base + at.STUCK_SHARE, runs)
+    add(sums, tally + at.STUCK, runs, stayed)
+    add(sums, tally + at.SLID, runs, closed - stayed)
     if not anywhere(status > 0.5 * STICKING):
-        return zero
-    landed = choose(touched, zero, choose(apart, zero, 1.0))
-    closed = choose(touched, 1.0, landed_share(held(carried, base + at.LAST_GAP, run, zero), free_gap))
+        return runs.zero
+    landed = choose(touched, runs.zero, choose(apart, runs.zero, 1.0))
+    closed = choose(touched, 1.0, landed_share(held(carried, base + at.LAST_GAP, runs), free_gap))
     sticks = magnitude(resting(status) - STICKING) < 0.5
-    add(sums, tally + at.TOUCHDOWNS, run, landed, zero)
-    add(sums, tally + at.JAMS, run, jammed, zero)
-    add(sums, tally + at.STUCK_STEPS, run, choose(sticks, 1.0, zero), zero)
-    add(sums, tally + at.SLID_STEPS, run, choose(sticks, zero, choose(apart, zero, 1.0)), zero)
-    return choose(apart, zero, closed)
+    add(sums, tally + at.TOUCHDOWNS, runs, landed)
+    add(sums, tally + at.JAMS, runs, jammed)
+    add(sums, tally + at.STUCK_STEPS, runs, choose(sticks, 1.0, runs.zero))
+    add(sums, tally + at.SLID_STEPS, runs, choose(sticks, runs.zero, choose(apart, runs.zero, 1.0)))
+    return choose(apart, runs.zero, closed)
 
 
-@numba.njit(**OPTIONS)
-def keep_anchor(i, slip, law, status, was, carried, run, zero):
+@inlined
+def keep_anchor(i: int, slip: Number, law: int, status: Number, was: Number, carried: Array, runs: Runs) -> None:
     """Carry the anchor of a stick of contact `i`; on its way through the step a contact may stop after a slip."""
     base = i * at.CARRIED
-    place = held(carried, base + at.MATERIAL, run, zero) + (zero if law == at.COULOMB else slip)
-    anchor = held(carried, base + at.ANCHOR, run, zero)
-    hold(carried, base + at.ANCHOR, run, anchor_after(anchor, place, status, was))
+    place = held(carried, base + at.MATERIAL, runs) + (runs.zero if law == at.COULOMB else slip)
+    anchor = held(carried, base + at.ANCHOR, runs)
+    hold(carried, base + at.ANCHOR, runs, anchor_after(anchor, place, status, was))
 
 
-@numba.njit(**OPTIONS)
-def centred(motion, n, column, zero):
+@inlined
+def centred(motion: Array, n: int, column: int, zero: Number) -> Number:
     """Return the motion of a step, half the sum over the steps before and after."""
     return 0.5 * (read(motion, n + 2, column, zero) - read(motion, n, column, zero))
 
 
-@numba.njit(**OPTIONS)
-def driven_work(i, touch, motion, n, run, runs, zero):
+@inlined
+def driven_work(i: int, touch: tuple[Any, ...], motion: Array, n: int, runs: Runs) -> Number:
     """Return the work of the motions imposed on contact `i` through its forces in step `n`."""
-    column = i * at.MOTIONS * runs + run
-    tip = centred(motion, n, column + at.TIP_MOTION * runs, zero)
-    track = centred(motion, n, column + at.TRACK_MOTION * runs, zero)
-    lift = centred(motion, n, column + at.GAP_MOTION * runs, zero)
+    column = i * at.MOTIONS * runs.columns + runs.first
+    tip = centred(motion, n, column + at.TIP_MOTION * runs.columns, runs.zero)
+    track = centred(motion, n, column + at.TRACK_MOTION * runs.columns, runs.zero)
+    lift = centred(motion, n, column + at.GAP_MOTION * runs.columns, runs.zero)
     return touch[1] * (tip - track) - touch[0] * lift
 
 
-@numba.njit(**OPTIONS)
-def next_of(i, touch, moved, w, away, before, contacts, step, run, runs, zero):
+@inlined
+def next_of(
+    i: int,
+    touch: Touch,
+    moved: Moved,
+    w: Compliance,
+    away: Number,
+    before: Before,
+    contacts: Contacts,
+    step: Number,
+    runs: Runs,
+) -> Numbers:
     """Return the past part of the ratio of contact `i` for the next step, the state of its law, its share of stick."""
-    law, laws, number = contacts.codes[i], contacts.laws, i * runs + run
+    law, laws, number = contacts.codes[i], contacts.laws, i * runs.columns + runs.first
     if law == at.COULOMB:
-        return zero, before[3], zero
-    let_go = held(contacts.now, i * at.IN_STEP + at.LET_GO, run, zero)
-    return next_on_way((touch[0], touch[2]), moved[0], moved[1], away, w, law, laws, number, before, let_go, step)
+        return runs.zero, before.state, runs.zero
+    let_go = held(contacts.now, i * at.IN_STEP + at.LET_GO, runs)
+    return next_on_way(
+        (touch.normal, touch.status), moved.free_gap, moved.free_slip, away, w, law, laws, number, before, let_go, step
+    )
 
 
-@numba.njit(**OPTIONS)
-def keep_forces(i, touch, moved, carried, contacts, closed, run, zero):
+@inlined
+def keep_forces(
+    i: int,
+    touch: Touch,
+    moved: Moved,
+    carried: Array,
+    contacts: Contacts,
+    closed: Number,
+    runs: Runs,
+) -> Number:
     """Carry status and normal force of contact `i` to the next step; return the loss to friction."""
     base, law = i * at.CARRIED, contacts.codes[i]
     normal, tangential, status, _ = touch
-    slip = moved[3]
-    add(contacts.sums, i * at.SUMS + at.NORMALS, run, normal, zero)
-    hold(carried, base + at.STATUS, run, resting(status))
-    hold(carried, base + at.CLOSED_SHARE, run, closed)
-    hold(carried, base + at.LAST_NORMAL, run, normal)
+    slip = moved.slip
+    add(contacts.sums, i * at.SUMS + at.NORMALS, runs, normal)
+    hold(carried, base + at.STATUS, runs, resting(status))
+    hold(carried, base + at.CLOSED_SHARE, runs, closed)
+    hold(carried, base + at.LAST_NORMAL, runs, normal)
     # In a step in which the slip turns round, its mean force and the slip have opposite signs.
     return magnitude(tangential * slip) if set_valued(law) else tangential * slip
 
 
-@numba.njit(**OPTIONS)
-def keep_tangential(i, tangential, carried, sums, run, zero):
+@inlined
+def keep_tangential(i: int, tangential: Number, carried: Array, sums: Array, runs: Runs) -> None:
     """Carry and sum the force along the tangent of contact `i`."""
-    add(sums, i * at.SUMS + at.TANGENTIALS, run, tangential, zero)
-    hold(carried, i * at.CARRIED + at.LAST_TANGENTIAL, run, tangential)
+    add(sums, i * at.SUMS + at.TANGENTIALS, runs, tangential)
+    hold(carried, i * at.CARRIED + at.LAST_TANGENTIAL, runs, tangential)
 
 
-@numba.njit(**OPTIONS)
-def keep_motion(i, moved, stuck, before, carried, run, zero):
+@inlined
+def keep_motion(i: int, moved: Moved, stuck: Number, last_slip: Number, carried: Array, runs: Runs) -> None:
     """Carry gap and slip of contact `i` to the next step; none where it sticks throughout, as it is rounding."""
     base = i * at.CARRIED
-    hold(carried, base + at.EARLIER_SLIP, run, before[1])
-    hold(carried, base + at.LAST_SLIP, run, choose(stuck >= 1.0, zero, moved[3]))
-    hold(carried, base + at.EARLIEST_GAP, run, held(carried, base + at.EARLIER_GAP, run, zero))
-    hold(carried, base + at.EARLIER_GAP, run, held(carried, base + at.LAST_GAP, run, zero))
-    hold(carried, base + at.LAST_GAP, run, moved[2])
-    add(carried, base + at.MATERIAL, run, moved[3], zero)
+    hold(carried, base + at.EARLIER_SLIP, runs, last_slip)
+    hold(carried, base + at.LAST_SLIP, runs, choose(stuck >= 1.0, runs.zero, moved.slip))
+    hold(carried, base + at.EARLIEST_GAP, runs, held(carried, base + at.EARLIER_GAP, runs))
+    hold(carried, base + at.EARLIER_GAP, runs, held(carried, base + at.LAST_GAP, runs))
+    hold(carried, base + at.LAST_GAP, runs, moved.gap)
+    add(carried, base + at.MATERIAL, runs, moved.slip)
 
 
-@numba.njit(**OPTIONS)
-def keep_place(i, carried, place, run, zero):
+@inlined
+def keep_place(i: int, carried: Array, place: Number, runs: Runs) -> Number:
     """Carry the place of contact `i`; return half its advance in the last two steps."""
     base = i * at.CARRIED
-    way = 0.5 * (place - held(carried, base + at.ABSCISSA_BEFORE, run, zero))
-    hold(carried, base + at.ABSCISSA_BEFORE, run, held(carried, base + at.ABSCISSA, run, zero))
-    hold(carried, base + at.ABSCISSA, run, place)
+    way = 0.5 * (place - held(carried, base + at.ABSCISSA_BEFORE, runs))
+    hold(carried, base + at.ABSCISSA_BEFORE, runs, held(carried, base + at.ABSCISSA, runs))
+    hold(carried, base + at.ABSCISSA, runs, place)
     return way
 
 
-@numba.njit(**OPTIONS)
-def store_in(i, gap, contacts, state, run, zero):
+@inlined
+def store_in(i: int, gap: Number, contacts: Contacts, state: Carried, runs: Runs) -> None:
     """Add the energy that a yielding contact stores in this step to the work of the contacts."""
-    yields = yields_of(i, contacts.constants, run, zero)
+    yields = yields_of(i, contacts.constants, runs)
     if anywhere(yields[0] > 0.0):
-        now, before, _ = path_of(i, state.carried, run, zero)
+        now, before, _ = path_of(i, state.carried, runs)
         stored = stored_in(-gap, now, yields) - stored_in(now, before, yields)
-        add(state.energies, at.CONTACT_WORK, run, stored, zero)
+        add(state.energies, at.CONTACT_WORK, runs, stored)
 
 
-@numba.njit(**OPTIONS)
-def stored_in_contacts(contacts, carried, count, run, zero):
+@inlined
+def stored_in_contacts(contacts: Contacts, carried: Array, count: int, runs: Runs) -> Number:
     """Return the energy stored in yielding contacts half a step ago."""
-    energy = zero
+    energy = runs.zero
     for i in range(count):
-        yields = yields_of(i, contacts.constants, run, zero)
+        yields = yields_of(i, contacts.constants, runs)
         if anywhere(yields[0] > 0.0):
-            now, before, _ = path_of(i, carried, run, zero)
+            now, before, _ = path_of(i, carried, runs)
             energy += stored_in(now, before, yields)
     return energy
 
 
-@numba.njit(**OPTIONS)
-def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, runs, zero):
+@inlined
+def keep_books(
+    i: int,
+    w: Compliance,
+    touch: Touch,
+    moved: Moved,
+    contacts: Contacts,
+    state: Carried,
+    imposed: Imposed,
+    timing: Timing,
+    n: int,
+    runs: Runs,
+) -> None:
     """Do the bookkeeping of contact `i` in step `n`, except for its place.
 
     `touch` are normal and tangential force, status and whether it jams, `moved` gap and slip without these forces, then
     with them.
     """
     law, carried, sums = contacts.codes[i], state.carried, contacts.sums
-    before = carried_by(carried, i, run, zero)
-    store_in(i, moved[2], contacts, state, run, zero)
+    before = carried_by(carried, i, runs)
+    store_in(i, moved.gap, contacts, state, runs)
     give, beyond = (
-        held(contacts.now, i * at.IN_STEP + at.GIVE, run, zero),
-        held(contacts.now, i * at.IN_STEP + at.BEYOND, run, zero),
+        held(contacts.now, i * at.IN_STEP + at.GIVE, runs),
+        held(contacts.now, i * at.IN_STEP + at.BEYOND, runs),
     )
-    stuck = zero
-    w, moved = (w[0] + give, w[1], w[2], w[3]), (moved[0] + beyond, moved[1], moved[2], moved[3])
-    if not set_valued(law) or anywhere(touch[2] + before[0] > 0.5):
-        away = strayed(carried, i, run, zero)
-        at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero)
-        closed = share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, run, zero)
-        keep_anchor(i, moved[3], law, touch[2], before[0], carried, run, zero)
+    stuck = runs.zero
+    w = Compliance(w.nn + give, w.nt, w.tn, w.tt)
+    moved = Moved(moved.free_gap + beyond, moved.free_slip, moved.gap, moved.slip)
+    if not set_valued(law) or anywhere(touch.status + before.status > 0.5):
+        away = strayed(carried, i, runs)
+        at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, runs)
+        closed = share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, runs)
+        keep_anchor(i, moved.slip, law, touch.status, before.status, carried, runs)
         if imposed.motion.shape[0] > 1:
-            driven = driven_work(i, touch, imposed.motion, n, run, runs, zero)
-            add(state.energies, at.CONTACT_WORK, run, -driven, zero)
-            add(state.energies, at.DRIVE_WORK, run, driven, zero)
-        past, friction_state, stuck = next_of(i, touch, moved, w, away, before, contacts, timing.step, run, runs, zero)
-        hold(carried, i * at.CARRIED + at.STUCK_SHARE, run, stuck)
-        hold(carried, i * at.CARRIED + at.PAST_RATIO, run, past)
-        hold(carried, i * at.CARRIED + at.FRICTION_STATE, run, friction_state)
-        lost = keep_forces(i, touch, moved, carried, contacts, closed, run, zero)
-        keep_tangential(i, touch[1], carried, sums, run, zero)
-        add(state.energies, at.FRICTION_LOSS, run, lost, zero)
-    keep_motion(i, moved, stuck, before, carried, run, zero)
+            driven = driven_work(i, touch, imposed.motion, n, runs)
+            add(state.energies, at.CONTACT_WORK, runs, -driven)
+            add(state.energies, at.DRIVE_WORK, runs, driven)
+        past, friction_state, stuck = next_of(i, touch, moved, w, away, before, contacts, timing.step, runs)
+        hold(carried, i * at.CARRIED + at.STUCK_SHARE, runs, stuck)
+        hold(carried, i * at.CARRIED + at.PAST_RATIO, runs, past)
+        hold(carried, i * at.CARRIED + at.FRICTION_STATE, runs, friction_state)
+        lost = keep_forces(i, touch, moved, carried, contacts, closed, runs)
+        keep_tangential(i, touch.tangential, carried, sums, runs)
+        add(state.energies, at.FRICTION_LOSS, runs, lost)
+    keep_motion(i, moved, stuck, before.slip, carried, runs)
 
 
-@numba.njit(**OPTIONS)
-def credit(energies, work, lost, convected, run, zero):
+@inlined
+def credit(energies: Array, work: Number, lost: Number, convected: Number, runs: Runs) -> None:
     """Add the energies of a step of the modes: work of the contacts, loss to damping, convection work."""
-    add(energies, at.CONTACT_WORK, run, work, zero)
-    add(energies, at.DAMPING_LOSS, run, lost, zero)
-    add(energies, at.CONVECTION_WORK, run, convected, zero)
+    add(energies, at.CONTACT_WORK, runs, work)
+    add(energies, at.DAMPING_LOSS, runs, lost)
+    add(energies, at.CONVECTION_WORK, runs, convected)

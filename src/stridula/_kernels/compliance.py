@@ -1,16 +1,18 @@
 """Step 4 for contacts that move along paths: relative displacements of all contacts for unit forces on each."""
 
-import numba
-
 from . import layout as at
 from .block_rows import COMPLIANCE, CONTACTS, POSITION
+from .compiled import inlined
 from .coupled import respond
-from .lanes import component, set_component
-from .modes import OPTIONS, product, two_products
+from .lanes import Array, Runs, component, set_component
+from .modes import product, two_products
+from .parts import Modes, Paths
 
 
-@numba.njit(**OPTIONS)
-def set_compliance(rows, faces, spans, first_span, paths, count, run, zero):
+@inlined
+def set_compliance(
+    rows: Array, faces: Array, spans: Array, first_span: Array, paths: Paths, count: int, runs: Runs
+) -> None:
     """Set the compliance of bodies of uncoupled modes: that of constant rows plus that of paths.
 
     Contacts that share a path, or lie on the body of another contact's path, are coupled.
@@ -22,38 +24,38 @@ def set_compliance(rows, faces, spans, first_span, paths, count, run, zero):
             # Each pair of contacts on paths is taken once.
             if j > i and moves_along(paths, j):
                 continue
-            set_pair(rows, faces, spans, first_span, i, j, 2 * count, run, zero)
+            set_pair(rows, faces, spans, first_span, i, j, 2 * count, runs)
 
 
-@numba.njit(**OPTIONS)
-def moves_along(paths, i):
+@inlined
+def moves_along(paths: Paths, i: int) -> bool:
     """Return whether contact `i` moves along a path or round a body."""
     return paths.path_of[i] >= 0 or paths.body_of[i] >= 0
 
 
-@numba.njit(**OPTIONS)
-def set_pair(rows, faces, spans, first_span, i, j, size, run, zero):
+@inlined
+def set_pair(rows: Array, faces: Array, spans: Array, first_span: Array, i: int, j: int, size: int, runs: Runs) -> None:
     """Set the compliance of contact `i`, which is on a path, for forces on contact `j`, and the reverse."""
     for side in range(2):
-        normal = component(faces, 2 * i + side, COMPLIANCE + size + 2 * j, run, zero)
-        tangential = component(faces, 2 * i + side, COMPLIANCE + size + 2 * j + 1, run, zero)
+        normal = component(faces, 2 * i + side, COMPLIANCE + size + 2 * j, runs)
+        tangential = component(faces, 2 * i + side, COMPLIANCE + size + 2 * j + 1, runs)
         for s in range(first_span[i], first_span[i + 1]):
             if spans[s, at.KIND] != at.CONSTANT:
                 begin, end = spans[s, at.BEGIN], spans[s, at.END]
-                along = two_products(rows, CONTACTS + 2 * j, CONTACTS + 2 * i + side, begin, end, run, zero)
+                along = two_products(rows, CONTACTS + 2 * j, CONTACTS + 2 * i + side, begin, end, runs)
                 normal, tangential = normal + along[0], tangential + along[1]
         for s in range(first_span[j], first_span[j + 1]):
             if spans[s, at.KIND] != at.CONSTANT and not shared(spans, first_span, i, spans[s, at.BEGIN]):
                 begin, end = spans[s, at.BEGIN], spans[s, at.END]
-                along = two_products(rows, CONTACTS + 2 * j, CONTACTS + 2 * i + side, begin, end, run, zero)
+                along = two_products(rows, CONTACTS + 2 * j, CONTACTS + 2 * i + side, begin, end, runs)
                 normal, tangential = normal + along[0], tangential + along[1]
         for other, value in ((2 * j, normal), (2 * j + 1, tangential)):
-            set_component(faces, 2 * i + side, COMPLIANCE + other, run, value)
-            set_component(faces, other, COMPLIANCE + 2 * i + side, run, value)
+            set_component(faces, 2 * i + side, COMPLIANCE + other, runs, value)
+            set_component(faces, other, COMPLIANCE + 2 * i + side, runs, value)
 
 
-@numba.njit(**OPTIONS)
-def shared(spans, first_span, i, begin):
+@inlined
+def shared(spans: Array, first_span: Array, i: int, begin: int) -> bool:
     """Return whether a span of a path also belongs to contact `i`."""
     for s in range(first_span[i], first_span[i + 1]):
         if spans[s, at.KIND] != at.CONSTANT and spans[s, at.BEGIN] == begin:
@@ -61,16 +63,18 @@ def shared(spans, first_span, i, begin):
     return False
 
 
-@numba.njit(**OPTIONS)
-def set_compliance_of_coupled(modes, faces, blocks, coupled, places, count, run, zero):
+@inlined
+def set_compliance_of_coupled(
+    modes: Modes, faces: Array, blocks: int, coupled: int, places: int, count: int, runs: Runs
+) -> None:
     """Set the compliance of bodies of which some have coupled modes.
 
     It is symmetric except where stiffness and damping of these modes do not commute.
     """
     rows = modes.rows
     for j in range(2 * count):
-        respond(rows, modes.matrices, modes.reach, coupled, places, run, CONTACTS + j, POSITION, zero)
+        respond(rows, modes.matrices, modes.reach, coupled, places, runs, CONTACTS + j, POSITION)
         for i in range(2 * count):
-            value = product(rows, CONTACTS + i, POSITION, 0, coupled, run, zero)
-            value += product(rows, CONTACTS + i, CONTACTS + j, coupled, blocks, run, zero)
-            set_component(faces, i, COMPLIANCE + j, run, value)
+            value = product(rows, CONTACTS + i, POSITION, 0, coupled, runs)
+            value += product(rows, CONTACTS + i, CONTACTS + j, coupled, blocks, runs)
+            set_component(faces, i, COMPLIANCE + j, runs, value)

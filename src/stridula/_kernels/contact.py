@@ -1,12 +1,13 @@
 """Step 5, the state of one point contact with friction: the exact solution over one step."""
 
 import math
-
-import numba
+from typing import Any
 
 from . import layout as at
-from .friction import STRICT, set_valued, sliding_ratio, sticking_speed
-from .lanes import choose, magnitude
+from .compiled import strict, strict_pasted
+from .contact_values import Before, Compliance
+from .friction import set_valued, sliding_ratio, sticking_speed
+from .lanes import Array, Number, Pair, choose, magnitude
 from .law_columns import STATIC
 from .slipping import SEPARATED, SLIDING, STICKING, ratio_over_step, ratio_with_state
 
@@ -15,8 +16,19 @@ from .slipping import SEPARATED, SLIDING, STICKING, ratio_over_step, ratio_with_
 TRIALS, PATIENCE, ROUND_OFF = 80, 25, 1e-15
 
 
-@numba.njit(inline="always", **STRICT)
-def solve_contact(gap, slip, strayed, w, law, laws, i, before, let_go, step):
+@strict_pasted
+def solve_contact(
+    gap: Number,
+    slip: Number,
+    strayed: Number,
+    w: Compliance,
+    law: int,
+    laws: Array,
+    i: int,
+    before: Before,
+    let_go: bool,
+    step: Number,
+) -> tuple[Number, Number, int, bool]:
     """Return (normal force, tangential force, status, jammed) that close `gap` under a law of friction (step 5).
 
     `gap` is the gap [m] at the end of the step without contact force, `slip` the motion of the tip along the track in
@@ -29,43 +41,66 @@ def solve_contact(gap, slip, strayed, w, law, laws, i, before, let_go, step):
     if gap >= 0.0:
         return 0.0, 0.0, SEPARATED, False
     if law != at.COULOMB:
-        if set_valued(law) and w[3] == 0.0:
-            return slide_as_prescribed(gap, slip, strayed, w[0], law, laws, i, before, step)
+        if set_valued(law) and w.tt == 0.0:
+            return slide_as_prescribed(gap, slip, strayed, w.nn, law, laws, i, before, step)
         return slide_on_its_way(gap, slip, strayed, w, law, laws, i, before, let_go, step)
-    if w[3] == 0.0:
-        return slide_as_prescribed(gap, slip, strayed, w[0], law, laws, i, before, step)
+    if w.tt == 0.0:
+        return slide_as_prescribed(gap, slip, strayed, w.nn, law, laws, i, before, step)
     normal, tangential, status, jammed = solve_coulomb(gap, slip + strayed, w, laws[i, STATIC])
-    last_slip = before[1]
-    if before[0] == SLIDING and (status == STICKING or tangential * last_slip < 0.0):
+    last_slip = before.slip
+    if before.status == SLIDING and (status == STICKING or tangential * last_slip < 0.0):
         turns, pressed, turned, slides = turn_round(gap, slip, last_slip, w, laws[i, STATIC], laws[i, STATIC])
         if turns:
             return pressed, turned, SLIDING if slides else STICKING, False
     return normal, tangential, status, jammed
 
 
-@numba.njit(**STRICT)
-def ratio_under(normal, gap, slip, strayed, w, law, laws, i, before, let_go, step):
+@strict
+def ratio_under(
+    normal: Number,
+    gap: Number,
+    slip: Number,
+    strayed: Number,
+    w: Compliance,
+    law: int,
+    laws: Array,
+    i: int,
+    before: Before,
+    let_go: bool,
+    step: Number,
+) -> tuple[Any, ...]:
     """Return the ratio of forces over a step under a normal force, its past part, new state, status and stuck share.
 
     Under a law with internal state nothing sticks, however slowly it creeps. See `slipping`.
     """
     if set_valued(law):
         ratio, past, status, stuck = ratio_over_step(normal, gap, slip, strayed, w, law, laws, i, before, let_go, step)
-        return ratio, past, before[3], status, stuck
+        return ratio, past, before.state, status, stuck
     ratio, past, state = ratio_with_state(normal, slip, w, law, laws, i, before, step)
-    moved = slip + (w[2] - ratio * w[3]) * normal
+    moved = slip + (w.tn - ratio * w.tt) * normal
     slow = abs(moved) < step * sticking_speed(law, laws, i)
     return ratio, past, state, STICKING if slow else SLIDING, 0.0
 
 
-@numba.njit(**STRICT)
-def slide_on_its_way(gap, slip, strayed, w, law, laws, i, before, let_go, step):
+@strict
+def slide_on_its_way(
+    gap: Number,
+    slip: Number,
+    strayed: Number,
+    w: Compliance,
+    law: int,
+    laws: Array,
+    i: int,
+    before: Before,
+    let_go: bool,
+    step: Number,
+) -> tuple[Number, Number, int, bool]:
     """Return the contact under a law whose friction changes within the step (5c).
 
     The normal force that closes the gap depends on the ratio, and this on the normal force: the secant method.
     """
-    w_nn, w_nt = w[0], w[1]
-    if set_valued(law) and before[0] != SLIDING:
+    w_nn, w_nt = w.nn, w.nt
+    if set_valued(law) and before.status != SLIDING:
         pressed, needed = sticking_forces(gap, slip + strayed, w)
         sticks = False
         if pressed > 0.0:
@@ -73,7 +108,7 @@ def slide_on_its_way(gap, slip, strayed, w, law, laws, i, before, let_go, step):
         if sticks:
             sense = 1.0 if needed >= 0.0 else -1.0
             return pressed, needed, STICKING, w_nn - sense * laws[i, STATIC] * w_nt <= 0.0
-    ratio = before[5] / before[4] if before[4] > 0.0 else 0.0
+    ratio = before.tangential / before.normal if before.normal > 0.0 else 0.0
     free = w_nn - ratio * w_nt
     normal = -gap / (free if free > 0.0 else w_nn)
     status, last, error_before = SLIDING, 0.0, 0.0
@@ -111,28 +146,30 @@ def slide_on_its_way(gap, slip, strayed, w, law, laws, i, before, let_go, step):
     return normal, ratio * normal, status, False
 
 
-@numba.njit(**STRICT)
-def sticking_forces(gap, slip, w):
+@strict
+def sticking_forces(gap: Number, slip: Number, w: Compliance) -> Pair:
     """Return the normal and the tangential force that close `gap` and undo `slip` (5b)."""
     w_nn, w_nt, w_tn, w_tt = w
     determinant = w_nn * w_tt - w_nt * w_tn
     return (w_nt * slip - w_tt * gap) / determinant, (w_nn * slip - w_tn * gap) / determinant
 
 
-@numba.njit(**STRICT)
-def solve_coulomb(gap, slip, w, mu):
+@strict
+def solve_coulomb(gap: Number, slip: Number, w: Compliance, mu: Number) -> tuple[Number, Number, int, bool]:
     """Return the contact (5b, 5c) that closes a `gap` below zero under one coefficient of friction."""
     normal, tangential = sticking_forces(gap, slip, w)
     sense = 1.0 if tangential >= 0.0 else -1.0
-    free = w[0] - sense * mu * w[1]
+    free = w.nn - sense * mu * w.nt
     if abs(tangential) <= mu * normal:
         return normal, tangential, STICKING, free <= 0.0
     normal = -gap / free
     return normal, sense * mu * normal, SLIDING, False
 
 
-@numba.njit(**STRICT)
-def turn_round(gap, slip, last_slip, w, ratio, held):
+@strict
+def turn_round(
+    gap: Number, slip: Number, last_slip: Number, w: Compliance, ratio: Number, held: Number
+) -> tuple[bool, Number, Number, bool]:
     """Return the contact of a slip that ends within the step (5d), as numbers of runs.
 
     The contact slides on for the share of the step until it stops; for the rest it is held, or slides back where
@@ -166,10 +203,20 @@ def turn_round(gap, slip, last_slip, w, ratio, held):
     return turns, normal, tangential, slides
 
 
-@numba.njit(**STRICT)
-def slide_as_prescribed(gap, slip, strayed, w_nn, law, laws, i, before, step):
+@strict
+def slide_as_prescribed(
+    gap: Number,
+    slip: Number,
+    strayed: Number,
+    w_nn: Number,
+    law: int,
+    laws: Array,
+    i: int,
+    before: Before,
+    step: Number,
+) -> tuple[Any, ...]:
     """Return the contact of bodies that no force moves along the tangent: the slip is given."""
-    status, last_slip = before[0], before[1]
+    status, last_slip = before.status, before.slip
     normal = -gap / w_nn
     if slip == 0.0 or slip + strayed == 0.0:
         return normal, 0.0, STICKING, False
@@ -180,8 +227,8 @@ def slide_as_prescribed(gap, slip, strayed, w_nn, law, laws, i, before, step):
     return normal, math.copysign(1.0, slip) * ratio * normal, SLIDING, False
 
 
-@numba.njit(inline="always", **STRICT)
-def velocity_at(slip, before, step):
+@strict_pasted
+def velocity_at(slip: Number, before: tuple[Any, ...], step: Number) -> Number:
     """Return the slip velocity at the middle of the last step and this one, of second order.
 
     The mean would not see a sawtooth from step to step. Among the second-order combinations of three slips this one
@@ -190,14 +237,14 @@ def velocity_at(slip, before, step):
     return (9.0 * slip + 6.0 * before[1] + before[2]) / (16.0 * step)
 
 
-@numba.njit(inline="always", **STRICT)
-def landed_share(gap_before, gap):
+@strict_pasted
+def landed_share(gap_before: Number, gap: Number) -> Number:
     """Return the share of a step that remains after an open contact closes; without contact `gap` would be reached."""
     return choose(gap < 0.0, gap, -1.0) / (choose(gap < 0.0, gap, -1.0) - gap_before)
 
 
-@numba.njit(inline="always", **STRICT)
-def closed_share(normal, tangential, gap, w_nn, w_nt):
+@strict_pasted
+def closed_share(normal: Number, tangential: Number, gap: Number, w_nn: Number, w_nt: Number) -> Number:
     """Return the share of the step before in which a contact that is open now was still closed.
 
     The force is taken straight from `normal` through zero to the force that would hold the contact closed, at the same
@@ -207,8 +254,8 @@ def closed_share(normal, tangential, gap, w_nn, w_nt):
     return normal / (normal + gap / choose(free > 0.0, free, w_nn))
 
 
-@numba.njit(inline="always", **STRICT)
-def stuck_share(normal, tangential, gap, slip, w, mu):
+@strict_pasted
+def stuck_share(normal: Number, tangential: Number, gap: Number, slip: Number, w: Compliance, mu: Number) -> Number:
     """Return the share of the step before in which a contact that slides now still stuck.
 
     The tangential force is taken straight from `tangential` through the border of the cone to the force that would keep

@@ -1,45 +1,69 @@
 """Step 5 for one contact in space under a law other than Coulomb's: the slip goes its way as a vector."""
 
 import math
-
-import numba
+from typing import Any
 
 from . import layout as at
+from .compiled import strict
 from .contact import PATIENCE, ROUND_OFF, SLIDING, STICKING, TRIALS, velocity_at
-from .friction import STRICT, set_valued, sliding_ratio, sticking_speed
+from .contact_values import BeforeInSpace, ComplianceInSpace
+from .friction import set_valued, sliding_ratio, sticking_speed
+from .lanes import Array, Numbers, Pair
 from .law_columns import NEW_STATE, STATIC
 from .slipping_in_space import plus, ratio_over_step, ratio_with_state, size_of, sticking_forces
 
 
-@numba.njit(**STRICT)
-def is_prescribed(law, w):
+@strict
+def is_prescribed(law: int, w: ComplianceInSpace) -> bool:
     """Return whether no force moves a contact under a set-valued law along its tangents: its slip is given."""
-    return set_valued(law) and w[4] == 0.0 and w[8] == 0.0
+    return set_valued(law) and w.aa == 0.0 and w.bb == 0.0
 
 
-@numba.njit(**STRICT)
-def ratio_under(normal, gap, slips, strays, w, law, laws, number, before, let_go, step):
+@strict
+def ratio_under(
+    normal: float,
+    gap: float,
+    slips: Pair,
+    strays: Pair,
+    w: ComplianceInSpace,
+    law: int,
+    laws: Array,
+    number: int,
+    before: BeforeInSpace,
+    let_go: bool,
+    step: float,
+) -> tuple[Any, ...]:
     """Return ratios over a step under a normal force, past parts, new states, status and share of stick.
 
     As `contact.ratio_under`.
     """
     if set_valued(law):
         found = ratio_over_step(normal, gap, slips, strays, w, law, laws, number, before, let_go, step)
-        return found[0], found[1], before[3], found[2], found[3]
+        return found[0], found[1], before.state, found[2], found[3]
     ratio, past, states = ratio_with_state(normal, slips, w, law, laws, number, before, step)
     moved = (
-        slips[0] + (w[3] - w[4] * ratio[0] - w[5] * ratio[1]) * normal,
-        slips[1] + (w[6] - w[7] * ratio[0] - w[8] * ratio[1]) * normal,
+        slips[0] + (w.an - w.aa * ratio[0] - w.ab * ratio[1]) * normal,
+        slips[1] + (w.bn - w.ba * ratio[0] - w.bb * ratio[1]) * normal,
     )
     slow = size_of(moved) < step * sticking_speed(law, laws, number)
     return ratio, past, states, STICKING if slow else SLIDING, 0.0
 
 
-@numba.njit(**STRICT)
-def slide_as_prescribed(gap, slips, strays, w, law, laws, number, before, step):
+@strict
+def slide_as_prescribed(
+    gap: float,
+    slips: Pair,
+    strays: Pair,
+    w: ComplianceInSpace,
+    law: int,
+    laws: Array,
+    number: int,
+    before: BeforeInSpace,
+    step: float,
+) -> Numbers:
     """Return the contact of bodies that no force moves along the tangents: as `contact.slide_as_prescribed`."""
-    was, last, earlier = before[0], before[1], before[2]
-    normal, size = -gap / w[0], size_of(slips)
+    was, last, earlier = before.status, before.slip, before.earlier_slip
+    normal, size = -gap / w.nn, size_of(slips)
     if size == 0.0 or size_of(plus(slips, 1.0, strays)) == 0.0:
         return normal, 0.0, 0.0, float(STICKING), 0.0
     way = slips[0] / size, slips[1] / size
@@ -60,34 +84,45 @@ def slide_as_prescribed(gap, slips, strays, w, law, laws, number, before, step):
     return normal, pulled * way[0], pulled * way[1], float(SLIDING), 0.0
 
 
-@numba.njit(**STRICT)
-def slide_on_its_way(gap, slips, strays, w, law, laws, number, before, let_go, step):
+@strict
+def slide_on_its_way(
+    gap: float,
+    slips: Pair,
+    strays: Pair,
+    w: ComplianceInSpace,
+    law: int,
+    laws: Array,
+    number: int,
+    before: BeforeInSpace,
+    let_go: bool,
+    step: float,
+) -> Numbers:
     """Return normal force, both tangential forces, status and whether it jams: as `contact.slide_on_its_way`."""
     if is_prescribed(law, w):
         return slide_as_prescribed(gap, slips, strays, w, law, laws, number, before, step)
-    if set_valued(law) and before[0] != SLIDING:
+    if set_valued(law) and before.status != SLIDING:
         pressed, first, second = sticking_forces(gap, plus(slips, 1.0, strays), w)
         if pressed > 0.0:
             tried = ratio_under(pressed, gap, slips, strays, w, law, laws, number, before, let_go, step)
             if tried[3] == STICKING:
                 most, pulled = laws[number, STATIC], math.hypot(first, second)
-                lifted = most * (first * w[1] + second * w[2]) / pulled if pulled > 0.0 else 0.0
-                return pressed, first, second, float(STICKING), 1.0 if w[0] <= lifted else 0.0
-    share = 1.0 / before[4] if before[4] > 0.0 else 0.0
-    ratio = share * before[5][0], share * before[5][1]
-    free = w[0] - ratio[0] * w[1] - ratio[1] * w[2]
-    normal = -gap / (free if free > 0.0 else w[0])
+                lifted = most * (first * w.na + second * w.nb) / pulled if pulled > 0.0 else 0.0
+                return pressed, first, second, float(STICKING), 1.0 if w.nn <= lifted else 0.0
+    share = 1.0 / before.normal if before.normal > 0.0 else 0.0
+    ratio = share * before.tangential[0], share * before.tangential[1]
+    free = w.nn - ratio[0] * w.na - ratio[1] * w.nb
+    normal = -gap / (free if free > 0.0 else w.nn)
     status, last, error_before = SLIDING, 0.0, 0.0
     low, high, below, above, settled = 0.0, math.inf, ratio, ratio, False
     for trial in range(TRIALS):
         ratio, _, _, status, _ = ratio_under(normal, gap, slips, strays, w, law, laws, number, before, let_go, step)
-        free = w[0] - ratio[0] * w[1] - ratio[1] * w[2]
+        free = w.nn - ratio[0] * w.na - ratio[1] * w.nb
         if free <= 0.0:
             pressed, first, second = sticking_forces(gap, plus(slips, 1.0, strays), w)
             return pressed, first, second, float(STICKING), 1.0
         found = -gap / free
         error = found - normal
-        settled = abs(error) <= ROUND_OFF * found or (w[1] == 0.0 and w[2] == 0.0)
+        settled = abs(error) <= ROUND_OFF * found or (w.na == 0.0 and w.nb == 0.0)
         if settled:
             normal = found
             break
@@ -107,14 +142,26 @@ def slide_on_its_way(gap, slips, strays, w, law, laws, number, before, let_go, s
             break
     if not settled and low > 0.0 and high < math.inf:
         # The ratio jumps at this normal force, where the contact stops or slides on: between both it closes the gap.
-        lifted, more = below[0] * w[1] + below[1] * w[2], above[0] * w[1] + above[1] * w[2]
-        share = min(max((w[0] + gap / normal - lifted) / (more - lifted), 0.0), 1.0) if more != lifted else 0.0
+        lifted, more = below[0] * w.na + below[1] * w.nb, above[0] * w.na + above[1] * w.nb
+        share = min(max((w.nn + gap / normal - lifted) / (more - lifted), 0.0), 1.0) if more != lifted else 0.0
         ratio = plus(below, share, plus(above, -1.0, below))
     return normal, ratio[0] * normal, ratio[1] * normal, float(status), 0.0
 
 
-@numba.njit(**STRICT)
-def next_on_way_of_run(touch, gap, slips, strays, w, law, laws, number, before, let_go, step):
+@strict
+def next_on_way_of_run(
+    touch: Pair,
+    gap: float,
+    slips: Pair,
+    strays: Pair,
+    w: ComplianceInSpace,
+    law: int,
+    laws: Array,
+    number: int,
+    before: BeforeInSpace,
+    let_go: float,
+    step: float,
+) -> tuple[Pair, Pair, float]:
     """Return past parts of the ratios for the next step, internal states and the share of stick of this step.
 
     `touch` are normal force and status. Where bodies are apart, states are those of new contacts.
@@ -123,7 +170,7 @@ def next_on_way_of_run(touch, gap, slips, strays, w, law, laws, number, before, 
         fresh = laws[number, NEW_STATE]
         return (0.0, 0.0), (fresh, fresh if law == at.LUGRE else 0.0), 0.0
     if law == at.COULOMB or is_prescribed(law, w):
-        return (0.0, 0.0), before[3], 1.0 if touch[1] == STICKING else 0.0
+        return (0.0, 0.0), before.state, 1.0 if touch[1] == STICKING else 0.0
     late = let_go > 0.5
     _, past, states, _, stuck = ratio_under(touch[0], gap, slips, strays, w, law, laws, number, before, late, step)
     return past, states, stuck

@@ -5,15 +5,15 @@ Numbers of contact `i` of a run lie in rows ``i * count + kind``.
 
 import math
 
-import numba
-
 from . import layout as at
 from .block_rows import COMPLIANCE, DISPLACEMENT
+from .compiled import entry, inlined, pasted
 from .contact import SLIDING, STICKING
+from .contact_values import Compliance
 from .direct import solve_states
 from .faces import displace, displace_freely, displace_in_space, own_compliance
-from .lanes import anywhere, choose, component, everywhere, held, hold, magnitude
-from .modes import ENTRY, OPTIONS, PASTED
+from .lanes import Array, Number, Numbers, Pair, Runs, anywhere, choose, component, everywhere, held, hold, magnitude
+from .parts import Contacts, Sizes, Timing
 from .solves import carried_by, strayed
 from .space import free_of_own, is_second, put_second
 from .yielding import comes_close, forces_of_any, forces_of_any_in_space, path_of, yields_of
@@ -34,74 +34,88 @@ ROUND_OFF = 1e-14
 ROUNDING = 1e-15
 
 
-@numba.njit(**OPTIONS)
-def is_alone(sizes):
+@inlined
+def is_alone(sizes: Sizes) -> bool:
     """Return whether there is one contact, which in space has two pairs of rows."""
     return sizes.contacts == (2 if sizes.space else 1)
 
 
-@numba.njit(**OPTIONS)
-def start_from_last(contacts, carried, touching, sizes, run, zero):
+@inlined
+def start_from_last(contacts: Contacts, carried: Array, touching: Number, sizes: Sizes, runs: Runs) -> None:
     """Start contacts that were closed from the forces of the last step, in runs with any contact touching."""
     faces, now = contacts.faces, contacts.now
     # A single contact needs no start: it is solved at once.
-    warm = zero if is_alone(sizes) else choose(touching > 0.5, 1.0, zero)
-    displace_freely(faces, now, sizes.contacts, run, zero)
+    warm = runs.zero if is_alone(sizes) else choose(touching > 0.5, 1.0, runs.zero)
+    displace_freely(faces, now, sizes.contacts, runs)
     for i in range(sizes.contacts):
         here, base = i * at.IN_STEP, i * at.CARRIED
-        was_closed = warm * held(carried, base + at.STATUS, run, zero) > 0.5 * STICKING
-        normal = choose(was_closed, held(carried, base + at.LAST_NORMAL, run, zero), zero)
-        tangential = choose(was_closed, held(carried, base + at.LAST_TANGENTIAL, run, zero), zero)
-        hold(now, here + at.NORMAL_NOW, run, normal)
-        hold(now, here + at.TANGENTIAL_NOW, run, tangential)
-        status = choose(normal > 0.0, held(carried, base + at.STATUS, run, zero), zero)
-        hold(now, here + at.STATUS_NOW, run, status)
-        hold(now, here + at.JAMMED_NOW, run, zero)
-        close = comes_close(i, held(now, here + at.FREE_GAP, run, zero), contacts.constants, carried, run, zero)
-        hold(now, here + at.MAY_TOUCH, run, choose(normal > 0.0, 1.0, close))
-        hold(now, here + at.GIVE, run, zero)
-        hold(now, here + at.BEYOND, run, zero)
-        hold(now, here + at.BROKE, run, zero)
-        hold(now, here + at.LET_GO, run, zero)
+        was_closed = warm * held(carried, base + at.STATUS, runs) > 0.5 * STICKING
+        normal = choose(was_closed, held(carried, base + at.LAST_NORMAL, runs), runs.zero)
+        tangential = choose(was_closed, held(carried, base + at.LAST_TANGENTIAL, runs), runs.zero)
+        hold(now, here + at.NORMAL_NOW, runs, normal)
+        hold(now, here + at.TANGENTIAL_NOW, runs, tangential)
+        status = choose(normal > 0.0, held(carried, base + at.STATUS, runs), runs.zero)
+        hold(now, here + at.STATUS_NOW, runs, status)
+        hold(now, here + at.JAMMED_NOW, runs, runs.zero)
+        close = comes_close(i, held(now, here + at.FREE_GAP, runs), contacts.constants, carried, runs)
+        hold(now, here + at.MAY_TOUCH, runs, choose(normal > 0.0, 1.0, close))
+        hold(now, here + at.GIVE, runs, runs.zero)
+        hold(now, here + at.BEYOND, runs, runs.zero)
+        hold(now, here + at.BROKE, runs, runs.zero)
+        hold(now, here + at.LET_GO, runs, runs.zero)
         if anywhere(normal > 0.0):
-            displace(faces, sizes.faces, i, run, normal, tangential)
+            displace(faces, sizes.faces, i, runs, normal, tangential)
 
 
-@numba.njit(**PASTED)
-def forces_of_this(i, gap, slip, w, contacts, carried, let_go, step, run, runs, zero):
+@pasted
+def forces_of_this(
+    i: int,
+    gap: Number,
+    slip: Number,
+    w: Compliance,
+    contacts: Contacts,
+    carried: Array,
+    let_go: Number,
+    step: Number,
+    runs: Runs,
+) -> Numbers:
     """Return normal force, tangential force, status and whether it jams, for contact `i` of the plane."""
     away, at_rest = (
-        strayed(carried, i, run, zero),
-        held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero),
+        strayed(carried, i, runs),
+        held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, runs),
     )
-    law, number = contacts.codes[i], i * runs + run
-    before = carried_by(carried, i, run, zero)
-    yields, path = yields_of(i, contacts.constants, run, zero), path_of(i, carried, run, zero)
+    law, number = contacts.codes[i], i * runs.columns + runs.first
+    before = carried_by(carried, i, runs)
+    yields, path = yields_of(i, contacts.constants, runs), path_of(i, carried, runs)
     friction = (law, contacts.laws, number, at_rest)
     normal, tangential, status, jammed, give, beyond = forces_of_any(
-        (gap, slip, away, w), friction, before, let_go, step, yields, path, zero
+        (gap, slip, away, w), friction, before, let_go, step, yields, path, runs.zero
     )
-    hold(contacts.now, i * at.IN_STEP + at.GIVE, run, give)
-    hold(contacts.now, i * at.IN_STEP + at.BEYOND, run, beyond)
+    hold(contacts.now, i * at.IN_STEP + at.GIVE, runs, give)
+    hold(contacts.now, i * at.IN_STEP + at.BEYOND, runs, beyond)
     return normal, tangential, status, jammed
 
 
-@numba.njit(**PASTED)
-def forces_of_this_in_space(i, contacts, carried, let_go, step, run, runs, zero):
+@pasted
+def forces_of_this_in_space(
+    i: int, contacts: Contacts, carried: Array, let_go: Number, step: Number, runs: Runs
+) -> Numbers:
     """Return normal force, both tangential forces, status and whether it jams, for contact `i` in space."""
-    free, laws = free_of_own(contacts, carried, i, run, runs, zero)
+    free, laws = free_of_own(contacts, carried, i, runs)
     gap, slips, strays, w, law, number, before = free
-    yields, path = yields_of(i, contacts.constants, run, zero), path_of(i, carried, run, zero)
+    yields, path = yields_of(i, contacts.constants, runs), path_of(i, carried, runs)
     normal, first, second, status, jammed, give, beyond = forces_of_any_in_space(
-        (gap, slips, strays, w), (law, laws, number), before, let_go, step, yields, path, zero
+        (gap, slips, strays, w), (law, laws, number), before, let_go, step, yields, path, runs.zero
     )
-    hold(contacts.now, i * at.IN_STEP + at.GIVE, run, give)
-    hold(contacts.now, i * at.IN_STEP + at.BEYOND, run, beyond)
+    hold(contacts.now, i * at.IN_STEP + at.GIVE, runs, give)
+    hold(contacts.now, i * at.IN_STEP + at.BEYOND, runs, beyond)
     return normal, first, second, status, jammed
 
 
-@numba.njit(**PASTED)
-def sweep_once(space, contacts, carried, sizes, step, done, run, runs, zero):
+@pasted
+def sweep_once(
+    space: bool | None, contacts: Contacts, carried: Array, sizes: Sizes, step: Number, done: Number, runs: Runs
+) -> Numbers:
     """Solve contacts that may touch in turn, in runs not `done`; return the changes.
 
     Nothing is compiled for contacts with two tangents if `space` is None.
@@ -116,56 +130,54 @@ def sweep_once(space, contacts, carried, sizes, step, done, run, runs, zero):
         Whether no state changed.
     """
     faces, now = contacts.faces, contacts.now
-    change, largest, misfit, reach, settled = zero, zero, zero, zero, zero + 1.0
+    change, largest, misfit, reach, settled = runs.zero, runs.zero, runs.zero, runs.zero, runs.zero + 1.0
     for i in range(sizes.contacts):
         here = i * at.IN_STEP
         if is_second(contacts.codes, i):
             continue
-        gap = component(faces, 2 * i, DISPLACEMENT, run, zero)
-        may_touch = held(now, here + at.MAY_TOUCH, run, zero)
+        gap = component(faces, 2 * i, DISPLACEMENT, runs)
+        may_touch = held(now, here + at.MAY_TOUCH, runs)
         may_touch = choose(gap < 0.0, 1.0, may_touch)
         if not anywhere(may_touch > 0.5):
             continue
-        hold(now, here + at.MAY_TOUCH, run, may_touch)
-        slip = component(faces, 2 * i + 1, DISPLACEMENT, run, zero)
+        hold(now, here + at.MAY_TOUCH, runs, may_touch)
+        slip = component(faces, 2 * i + 1, DISPLACEMENT, runs)
         was_normal, was_tangential = (
-            held(now, here + at.NORMAL_NOW, run, zero),
-            held(now, here + at.TANGENTIAL_NOW, run, zero),
+            held(now, here + at.NORMAL_NOW, runs),
+            held(now, here + at.TANGENTIAL_NOW, runs),
         )
-        was, let_go = held(now, here + at.STATUS_NOW, run, zero), held(now, here + at.LET_GO, run, zero)
-        w = own_compliance(faces, i, run, zero)
-        second, normal, tangential, status, jammed = zero, zero, zero, zero, zero
+        was, let_go = held(now, here + at.STATUS_NOW, runs), held(now, here + at.LET_GO, runs)
+        w = own_compliance(faces, i, runs)
+        second, normal, tangential, status, jammed = runs.zero, runs.zero, runs.zero, runs.zero, runs.zero
         in_space = False
         if space is not None:
             in_space = is_second(contacts.codes, i + 1)
             if in_space:
                 normal, tangential, second, status, jammed = forces_of_this_in_space(
-                    i, contacts, carried, let_go, step, run, runs, zero
+                    i, contacts, carried, let_go, step, runs
                 )
         if not in_space:
             gap -= w[0] * was_normal - w[1] * was_tangential
             slip -= w[2] * was_normal - w[3] * was_tangential
-            normal, tangential, status, jammed = forces_of_this(
-                i, gap, slip, w, contacts, carried, let_go, step, run, runs, zero
-            )
+            normal, tangential, status, jammed = forces_of_this(i, gap, slip, w, contacts, carried, let_go, step, runs)
         goes_on = done < 0.5
         normal, tangential = choose(goes_on, normal, was_normal), choose(goes_on, tangential, was_tangential)
         status = choose(goes_on, status, was)
-        hold(now, here + at.NORMAL_NOW, run, normal)
-        hold(now, here + at.TANGENTIAL_NOW, run, tangential)
-        hold(now, here + at.STATUS_NOW, run, status)
-        hold(now, here + at.JAMMED_NOW, run, choose(goes_on, jammed, held(now, here + at.JAMMED_NOW, run, zero)))
-        broke = held(now, here + at.BROKE, run, zero)
-        hold(now, here + at.BROKE, run, choose(status > SLIDING - 0.5, 1.0, broke))
-        settled = choose(magnitude(status - was) > 0.5, zero, settled)
+        hold(now, here + at.NORMAL_NOW, runs, normal)
+        hold(now, here + at.TANGENTIAL_NOW, runs, tangential)
+        hold(now, here + at.STATUS_NOW, runs, status)
+        hold(now, here + at.JAMMED_NOW, runs, choose(goes_on, jammed, held(now, here + at.JAMMED_NOW, runs)))
+        broke = held(now, here + at.BROKE, runs)
+        hold(now, here + at.BROKE, runs, choose(status > SLIDING - 0.5, 1.0, broke))
+        settled = choose(magnitude(status - was) > 0.5, runs.zero, settled)
         more, pulled = normal - was_normal, tangential - was_tangential
         if not in_space:
-            displace(faces, sizes.faces, i, run, more, pulled)
+            displace(faces, sizes.faces, i, runs, more, pulled)
         elif space is not None:
-            swerved = put_second(contacts, i, run, goes_on, normal, second, status, zero)
-            displace_in_space(faces, sizes.faces, i, run, more, pulled, swerved)
+            swerved = put_second(contacts, i, runs, goes_on, normal, second, status)
+            displace_in_space(faces, sizes.faces, i, runs, more, pulled, swerved)
             change = largest_of(change, magnitude(swerved))
-            across = component(faces, 2 * i + 3, COMPLIANCE + 2 * i + 3, run, zero)
+            across = component(faces, 2 * i + 3, COMPLIANCE + 2 * i + 3, runs)
             misfit = largest_of(misfit, magnitude(across * swerved))
         change = largest_of(change, largest_of(magnitude(more), magnitude(pulled)))
         largest = largest_of(largest, largest_of(normal, magnitude(tangential)))
@@ -175,23 +187,25 @@ def sweep_once(space, contacts, carried, sizes, step, done, run, runs, zero):
     return change, largest, misfit, reach, settled
 
 
-@numba.njit(**OPTIONS)
-def rounding_of_slips(carried, sizes, run, zero):
+@inlined
+def rounding_of_slips(carried: Array, sizes: Sizes, runs: Runs) -> Number:
     """Return the rounding error of slips, which are differences of abscissas."""
-    farthest = zero
+    farthest = runs.zero
     for i in range(sizes.contacts):
-        farthest = largest_of(farthest, magnitude(held(carried, i * at.CARRIED + at.MATERIAL, run, zero)))
+        farthest = largest_of(farthest, magnitude(held(carried, i * at.CARRIED + at.MATERIAL, runs)))
     return ROUNDING * farthest
 
 
-@numba.njit(**OPTIONS)
-def largest_of(one, other):
+@inlined
+def largest_of(one: Number, other: Number) -> Number:
     """Return the larger of two numbers, the first if either is not a number."""
     return choose(other > one, other, one)
 
 
-@numba.njit(**ENTRY)
-def solve_closed(space, contacts, carried, touching, sizes, timing, run, runs, zero):
+@entry
+def solve_closed(
+    space: bool | None, contacts: Contacts, carried: Array, touching: Number, sizes: Sizes, timing: Timing, runs: Runs
+) -> Pair:
     """Solve contacts in turn until no force changes; return the number of sweeps and the error from the changes.
 
     Runs without any contact `touching` have no forces. The error is relative to the largest force. A direct solve helps
@@ -199,33 +213,31 @@ def solve_closed(space, contacts, carried, touching, sizes, timing, run, runs, z
     state in which it could be held again: it is then let go. Results do not depend on the runs side by side: a run that
     is done does not change. Compiled once for the march and for the start.
     """
-    start_from_last(contacts, carried, touching, sizes, run, zero)
+    start_from_last(contacts, carried, touching, sizes, runs)
     if not anywhere(touching > 0.5):
-        return zero, zero
-    done = choose(touching > 0.5, zero, 1.0)
-    rounding = rounding_of_slips(carried, sizes, run, zero)
-    made, error, before = zero, choose(touching > 0.5, math.inf, zero), zero + math.inf
-    given_up = zero
+        return runs.zero, runs.zero
+    done = choose(touching > 0.5, runs.zero, 1.0)
+    rounding = rounding_of_slips(carried, sizes, runs)
+    made, error, before = runs.zero, choose(touching > 0.5, math.inf, runs.zero), runs.zero + math.inf
+    given_up = runs.zero
     for sweep in range(timing.sweeps):
-        change, largest, misfit, reach, settled = sweep_once(
-            space, contacts, carried, sizes, timing.step, done, run, runs, zero
-        )
+        change, largest, misfit, reach, settled = sweep_once(space, contacts, carried, sizes, timing.step, done, runs)
         goes_on = done < 0.5
         exact = change <= ROUND_OFF * largest
         # The changes of a linear iteration fall by a constant factor, which gives the sum of those still to come. From
         # forces that were nearly right, the first changes fall faster.
         falls = choose(change < before, before, math.inf) < math.inf
         size = choose(largest > 0.0, largest, 1.0)
-        to_come = largest_of(change / choose(falls, before - change, 1.0), zero + LEAST_TO_COME)
+        to_come = largest_of(change / choose(falls, before - change, 1.0), runs.zero + LEAST_TO_COME)
         estimate = choose(falls, change / size * to_come, math.inf)
         estimate = choose(exact, change / size, estimate)
         # With more rows than modes, forces keep drifting among sets that close the same gaps.
         closed = misfit <= GAPS * timing.tolerance * reach + rounding
-        estimate = choose(closed, choose(reach > 0.0, misfit, zero) / choose(reach > 0.0, reach, 1.0), estimate)
+        estimate = choose(closed, choose(reach > 0.0, misfit, runs.zero) / choose(reach > 0.0, reach, 1.0), estimate)
         error, made = choose(goes_on, estimate, error), choose(goes_on, sweep + 1.0, made)
         done = choose(exact, 1.0, choose(error <= timing.tolerance, 1.0, done))
         if is_alone(sizes):
-            return made, zero
+            return made, runs.zero
         if everywhere(done > 0.5):
             break
         before = change
@@ -234,15 +246,15 @@ def solve_closed(space, contacts, carried, touching, sizes, timing, run, runs, z
         early = sweep + 1 <= SWEEPS_PER_DIRECT_SOLVE if sizes.space else sweep + 1 == FIRST_DIRECT_SOLVE
         late = sizes.space and sweep + 1 > PATIENCE
         if early or ((sweep + 1) % SWEEPS_PER_DIRECT_SOLVE == 0 and not late):
-            changeable = choose(given_up > 0.5, settled, zero + 1.0) if early else settled
-            tried = choose(done < 0.5, changeable, zero)
+            changeable = choose(given_up > 0.5, settled, runs.zero + 1.0) if early else settled
+            tried = choose(done < 0.5, changeable, runs.zero)
             if anywhere(tried > 0.5):
-                given_up = solve_states(contacts, carried, sizes, timing.step, run, tried, zero)
+                given_up = solve_states(contacts, carried, sizes, timing.step, runs, tried)
                 again = sizes.space and sweep > 0 and early
-                before = choose(tried > 0.5, change if again else zero + math.inf, before)
+                before = choose(tried > 0.5, change if again else runs.zero + math.inf, before)
         if sweep + 1 == PATIENCE:
             for i in range(sizes.contacts):
                 here = i * at.IN_STEP
-                broke = held(contacts.now, here + at.BROKE, run, zero)
-                hold(contacts.now, here + at.LET_GO, run, choose(broke > 0.5, 1.0, zero + LATE))
+                broke = held(contacts.now, here + at.BROKE, runs)
+                hold(contacts.now, here + at.LET_GO, runs, choose(broke > 0.5, 1.0, runs.zero + LATE))
     return made, error

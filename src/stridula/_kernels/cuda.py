@@ -14,7 +14,7 @@ from .march import march
 _PACKAGE = __name__.rpartition(".")[0]
 
 
-def on_card(function, known=None):
+def on_card(function: Any, known: Any = None) -> Any:
     """Return a function of this package compiled for the card from the same code, with all functions that it calls.
 
     Numba would accept the functions compiled for the processor, but not the plain functions below them, which it
@@ -32,7 +32,7 @@ def on_card(function, known=None):
     return known[plain]
 
 
-def _is_ours(thing):
+def _is_ours(thing: Any) -> Any:
     """Return whether a thing is a function of this package, compiled or plain."""
     return isinstance(getattr(thing, "py_func", thing), FunctionType) and thing.__module__.startswith(_PACKAGE)
 
@@ -40,13 +40,13 @@ def _is_ours(thing):
 _march = on_card(march)
 
 
-def _each(single, several, space):
+def _each(single: Any, several: Any, space: Any) -> Any:
     """Return the kernel for a kind of systems, as in `march`."""
 
     @cuda.jit
-    def march_each(runs, parts):
+    def march_each(runs: Any, parts: Any) -> None:
         """March `runs` runs, one in each thread."""
-        run = cuda.grid(1)
+        run: int = cuda.grid(1)  # type: ignore[call-arg]
         if run < runs:
             _march(single, several, space, (run, runs), parts)
 

@@ -4,48 +4,49 @@ Forces have the signs with which they act on the modes, ``(normal, -tangential)`
 without forces plus the compliance times the forces.
 """
 
-import numba
-
 from . import layout as at
 from .block_rows import COMPLIANCE, DISPLACEMENT
-from .lanes import component, fused, held, load, set_component, store
-from .modes import OPTIONS
+from .compiled import inlined
+from .contact_values import Compliance
+from .lanes import Array, Number, Runs, component, fused, held, load, set_component, store
 
 
-@numba.njit(**OPTIONS)
-def own_compliance(faces, i, run, zero):
+@inlined
+def own_compliance(faces: Array, i: int, runs: Runs) -> Compliance:
     """Return the compliance of contact `i` for its own forces, row by row."""
     n, t = 2 * i, 2 * i + 1
-    return (
-        component(faces, n, COMPLIANCE + n, run, zero),
-        component(faces, n, COMPLIANCE + t, run, zero),
-        component(faces, t, COMPLIANCE + n, run, zero),
-        component(faces, t, COMPLIANCE + t, run, zero),
+    return Compliance(
+        component(faces, n, COMPLIANCE + n, runs),
+        component(faces, n, COMPLIANCE + t, runs),
+        component(faces, t, COMPLIANCE + n, runs),
+        component(faces, t, COMPLIANCE + t, runs),
     )
 
 
-@numba.njit(**OPTIONS)
-def displace(faces, blocks, i, run, normal, tangential):
+@inlined
+def displace(faces: Array, blocks: int, i: int, runs: Runs, normal: Number, tangential: Number) -> None:
     """Add the displacements due to changes of the forces of contact `i`."""
     for k in range(blocks):
-        moved = fused(load(faces, COMPLIANCE + 2 * i, k, run), normal, load(faces, DISPLACEMENT, k, run))
-        moved = fused(-load(faces, COMPLIANCE + 2 * i + 1, k, run), tangential, moved)
-        store(faces, DISPLACEMENT, k, run, moved)
+        moved = fused(load(faces, COMPLIANCE + 2 * i, k, runs), normal, load(faces, DISPLACEMENT, k, runs))
+        moved = fused(-load(faces, COMPLIANCE + 2 * i + 1, k, runs), tangential, moved)
+        store(faces, DISPLACEMENT, k, runs, moved)
 
 
-@numba.njit(**OPTIONS)
-def displace_in_space(faces, blocks, i, run, normal, first, second):
+@inlined
+def displace_in_space(
+    faces: Array, blocks: int, i: int, runs: Runs, normal: Number, first: Number, second: Number
+) -> None:
     """Add the displacements due to changes of the forces of contact `i` in space, which has no second normal."""
     for k in range(blocks):
-        moved = fused(load(faces, COMPLIANCE + 2 * i, k, run), normal, load(faces, DISPLACEMENT, k, run))
-        moved = fused(-load(faces, COMPLIANCE + 2 * i + 1, k, run), first, moved)
-        moved = fused(-load(faces, COMPLIANCE + 2 * i + 3, k, run), second, moved)
-        store(faces, DISPLACEMENT, k, run, moved)
+        moved = fused(load(faces, COMPLIANCE + 2 * i, k, runs), normal, load(faces, DISPLACEMENT, k, runs))
+        moved = fused(-load(faces, COMPLIANCE + 2 * i + 1, k, runs), first, moved)
+        moved = fused(-load(faces, COMPLIANCE + 2 * i + 3, k, runs), second, moved)
+        store(faces, DISPLACEMENT, k, runs, moved)
 
 
-@numba.njit(**OPTIONS)
-def displace_freely(faces, now, count, run, zero):
+@inlined
+def displace_freely(faces: Array, now: Array, count: int, runs: Runs) -> None:
     """Set the displacements without any force."""
     for i in range(count):
-        set_component(faces, 2 * i, DISPLACEMENT, run, held(now, i * at.IN_STEP + at.FREE_GAP, run, zero))
-        set_component(faces, 2 * i + 1, DISPLACEMENT, run, held(now, i * at.IN_STEP + at.FREE_SLIP, run, zero))
+        set_component(faces, 2 * i, DISPLACEMENT, runs, held(now, i * at.IN_STEP + at.FREE_GAP, runs))
+        set_component(faces, 2 * i + 1, DISPLACEMENT, runs, held(now, i * at.IN_STEP + at.FREE_SLIP, runs))

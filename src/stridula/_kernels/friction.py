@@ -5,11 +5,10 @@ a view of a row would cost more than the computation.
 """
 
 import math
-from typing import Any
-
-import numba
 
 from . import layout as at
+from .compiled import strict, strict_pasted
+from .lanes import Array, Number, Numbers, Pair
 from .law_columns import (
     BRISTLE_DAMPING,
     BRISTLE_STIFFNESS,
@@ -30,27 +29,23 @@ from .law_columns import (
     VISCOUS,
 )
 
-# Explicit, because a function inlined in the general march would inherit its permission to reorder sums, and would
-# round the distance from an anchor, slip + (material - anchor), like an abscissa.
-STRICT: dict[str, Any] = {"cache": True, "fastmath": False, "error_model": "numpy", "no_cfunc_wrapper": True}
 
-
-@numba.njit(**STRICT)
-def set_valued(law):
+@strict
+def set_valued(law: int) -> bool:
     """Return whether a law sticks exactly."""
     return SET_VALUED[law]
 
 
-@numba.njit(**STRICT)
-def holding_ratio(law, laws, i, was_sticking):
+@strict
+def holding_ratio(law: int, laws: Array, i: int, was_sticking: bool) -> Number:
     """Return the ratio up to which a contact under a set-valued law is held."""
     if law == at.STATIC_KINETIC and not was_sticking:
         return laws[i, KINETIC]
     return laws[i, STATIC]
 
 
-@numba.njit(**STRICT)
-def sliding_ratio(law, laws, i, speed):
+@strict
+def sliding_ratio(law: int, laws: Array, i: int, speed: Number) -> Number:
     """Return the ratio of a set-valued law in sliding at `speed`."""
     if law == at.COULOMB:
         return laws[i, STATIC]
@@ -65,8 +60,8 @@ def sliding_ratio(law, laws, i, speed):
     return max(laws[i, STATIC] - laws[i, SLOPE] * speed, laws[i, FLOOR])
 
 
-@numba.njit(**STRICT)
-def speed_scale(law, laws, i, state):
+@strict
+def speed_scale(law: int, laws: Array, i: int, state: Number) -> Number:
     """Return the slip speed above which the ratio of a law begins to bend."""
     if law == at.LINEAR_WEAKENING:
         return laws[i, END]
@@ -76,8 +71,8 @@ def speed_scale(law, laws, i, state):
     return 2.0 * laws[i, REFERENCE_VELOCITY] * math.exp(-min(ageing(laws, i, state), 600.0))
 
 
-@numba.njit(inline="always", **STRICT)
-def bristle_limit(laws, i, speed):
+@strict_pasted
+def bristle_limit(laws: Array, i: int, speed: Number) -> Pair:
     """Return the deflection of LuGre's bristles in steady sliding at a speed, and its derivative by the speed."""
     weakened = (laws[i, STATIC] - laws[i, KINETIC]) * math.exp(-((speed / laws[i, VELOCITY]) ** 2))
     return (laws[i, KINETIC] + weakened) / laws[i, BRISTLE_STIFFNESS], -2.0 * speed / (
@@ -85,8 +80,8 @@ def bristle_limit(laws, i, speed):
     ) * weakened / laws[i, BRISTLE_STIFFNESS]
 
 
-@numba.njit(inline="always", **STRICT)
-def bristles_over(laws, i, speed, step):
+@strict_pasted
+def bristles_over(laws: Array, i: int, speed: Number, step: Number) -> Numbers:
     """Return the motion of LuGre's bristles over a step at constant slip speed.
 
     Returns
@@ -107,8 +102,8 @@ def bristles_over(laws, i, speed, step):
     return kept, share, passed, passed_slope, share_slope
 
 
-@numba.njit(**STRICT)
-def next_state(law, laws, i, state, velocity, step):
+@strict
+def next_state(law: int, laws: Array, i: int, state: Number, velocity: Number, step: Number) -> Number:
     """Return the internal state after a step at constant slip velocity, exactly."""
     speed = abs(velocity)
     if law == at.LUGRE:
@@ -124,8 +119,8 @@ def next_state(law, laws, i, state, velocity, step):
     return state * age ** math.expm1(-turned)
 
 
-@numba.njit(**STRICT)
-def state_ratio(law, laws, i, state, velocity):
+@strict
+def state_ratio(law: int, laws: Array, i: int, state: Number, velocity: Number) -> Number:
     """Return the ratio of a law with internal state at a slip velocity."""
     speed = abs(velocity)
     if law == at.LUGRE:
@@ -140,16 +135,16 @@ def state_ratio(law, laws, i, state, velocity):
     return math.copysign(laws[i, DIRECT] * ratio, velocity)
 
 
-@numba.njit(inline="always", **STRICT)
-def ageing(laws, i, state):
+@strict_pasted
+def ageing(laws: Array, i: int, state: Number) -> Number:
     """Return the logarithm of the velocity of the law over that at which a contact of this state creeps."""
     return (
         laws[i, REFERENCE] + laws[i, EVOLVING] * math.log(laws[i, REFERENCE_VELOCITY] * state / laws[i, SLIP_DISTANCE])
     ) / laws[i, DIRECT]
 
 
-@numba.njit(**STRICT)
-def ratio_after(law, laws, i, state, velocity, time):
+@strict
+def ratio_after(law: int, laws: Array, i: int, state: Number, velocity: Number, time: Number) -> Pair:
     """Return the ratio of a law with internal state after some time at a slip velocity, and its derivative by it."""
     speed = abs(velocity)
     if law == at.LUGRE:
@@ -190,7 +185,7 @@ def ratio_after(law, laws, i, state, velocity, time):
     return math.copysign(laws[i, DIRECT] * ratio, velocity), slope
 
 
-@numba.njit(**STRICT)
-def sticking_speed(law, laws, i):
+@strict
+def sticking_speed(law: int, laws: Array, i: int) -> Number:
     """Return the slip speed below which a law with internal state counts as sticking."""
     return laws[i, VELOCITY] if law == at.LUGRE else laws[i, REFERENCE_VELOCITY]

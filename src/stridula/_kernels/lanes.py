@@ -1,122 +1,155 @@
 """Elementary operations of the march, on vectors of modes or runs where the processor has them.
 
 A vector holds `LANES` modes of one run, or one mode of `LANES` runs. A quantity of a run is a number in the first case
-and a vector in the second; functions take the type from an argument `like`, whose value does not matter. In plain
-Python and on a graphics card all values are numbers: one mode of one run.
+and a vector in the second, the type of the `zero` of the `runs` that march. In plain Python and on a graphics card all
+values are numbers: one mode of one run.
 """
 
 import inspect
 import math
+from typing import Any, NamedTuple, TypeAlias
 
+import numpy as np
 from numba.core import types
 from numba.extending import overload
+from numpy.typing import NDArray
+
+from .compiled import overloaded
+
+Array: TypeAlias = NDArray[Any]
+# A number of one run, or a vector with one for each of several.
+Number: TypeAlias = float
+Numbers: TypeAlias = tuple[Number, ...]
+# One for each of two tangents.
+Pair: TypeAlias = tuple[Number, Number]
 
 
-def placed(place):
-    """Return a zero of the type of the numbers of a run, the first run and the number of columns.
+# Conversions of constants, which then have no literal types, for each of which functions would be compiled again.
+INTEGER: Any = np.int64
+TRUTH: Any = np.bool_
+
+
+class Runs(NamedTuple):
+    """The runs that march together.
+
+    Attributes
+    ----------
+    first, columns : int
+        The first of them, and the number of columns of arrays with one for each run.
+    zero : float or vector
+        Zero for each.
+    """
+
+    first: int
+    columns: int
+    zero: Number
+
+
+def placed(place: tuple[int, int]) -> Runs:
+    """Return the runs that march together.
 
     Compiled code marches a single run if `place` is None, and a vector of runs if it is True; elsewhere it is one run
     of several, and their number.
     """
-    return 0.0, place[0], place[1]
+    return Runs(place[0], place[1], 0.0)
 
 
-def load(rows, k, row, run):
-    """Return a row of block `k`, of the runs from `run` on."""
-    return rows[k, row, run]
+def load(rows: Array, k: int, row: int, runs: Runs) -> Number:
+    """Return a row of block `k`."""
+    return rows[k, row, runs.first]
 
 
-def store(rows, k, row, run, value):
+def store(rows: Array, k: int, row: int, runs: Runs, value: Number) -> None:
     """Put modes into a row of block `k`."""
-    rows[k, row, run] = value
+    rows[k, row, runs.first] = value
 
 
-def entry(rows, k, row, run, like):
+def entry(rows: Array, k: int, row: int, runs: Runs) -> Number:
     """Return number `k` of a row that spans all blocks, for each run."""
-    return rows[k, row, run]
+    return rows[k, row, runs.first]
 
 
-def set_entry(rows, k, row, run, value):
+def set_entry(rows: Array, k: int, row: int, runs: Runs, value: Number) -> None:
     """Set number `k` of a row that spans all blocks, for each run."""
-    rows[k, row, run] = value
+    rows[k, row, runs.first] = value
 
 
-def component(rows, k, row, run, like):
+def component(rows: Array, k: int, row: int, runs: Runs) -> Number:
     """Return number `k` of a row that is contiguous over all blocks, for each run."""
-    return rows[row, k, run]
+    return rows[row, k, runs.first]
 
 
-def set_component(rows, k, row, run, value):
+def set_component(rows: Array, k: int, row: int, runs: Runs, value: Number) -> None:
     """Set number `k` of a row that is contiguous over all blocks, for each run."""
-    rows[row, k, run] = value
+    rows[row, k, runs.first] = value
 
 
-def read(array, row, column, like):
-    """Return the number of a run, or of each of several, from a row of `array`."""
+def read(array: Array, row: int, column: int, like: Number) -> Number:
+    """Return the number of a run, or of each of several, from a row of `array`, of the type of `like`."""
     return array[row, column]
 
 
-def write(array, row, column, value):
+def write(array: Array, row: int, column: int, value: Number) -> None:
     """Set the number of a run, or of each of several, in a row of `array`."""
     array[row, column] = value
 
 
-def held(array, row, run, like):
+def held(array: Array, row: int, runs: Runs) -> Number:
     """Return the number of a run, or of each of several, from a row of an array with one number for each run."""
-    return array[row, run]
+    return array[row, runs.first]
 
 
-def hold(array, row, run, value):
+def hold(array: Array, row: int, runs: Runs, value: Number) -> None:
     """Set the number of a run, or of each of several, in a row of an array with one number for each run."""
-    array[row, run] = value
+    array[row, runs.first] = value
 
 
-def spread(value):
+def spread(value: Number) -> Number:
     """Return a number in every lane."""
     return value
 
 
-def total(value, like):
-    """Return the sum over the modes in a vector, for each run in it."""
+def total(value: Number, like: Number) -> Number:
+    """Return the sum over the modes in a vector, for each run in it, of the type of `like`."""
     return value
 
 
-def choose(condition, yes, no):
+def choose(condition: bool, yes: Number, no: Number) -> Number:
     """Return `yes` where `condition` holds, `no` elsewhere."""
     return yes if condition else no
 
 
-def fused(a, b, c):
+def fused(a: Number, b: Number, c: Number) -> Number:
     """Return ``a b + c``, rounded once where the processor can, the same everywhere in the code."""
     return a * b + c
 
 
-def whole(value):
+def whole(value: Number) -> Number:
     """Return the largest whole number not above `value`."""
     return math.floor(value)
 
 
-def magnitude(value):
+def magnitude(value: Number) -> Number:
     """Return the absolute value."""
     return abs(value)
 
 
-def anywhere(condition):
+def anywhere(condition: bool) -> bool:
     """Return whether `condition` holds in any lane."""
     return condition
 
 
-def everywhere(condition):
+def everywhere(condition: bool) -> bool:
     """Return whether `condition` holds in all lanes."""
     return condition
 
 
-def lane(value, i):
+def lane(value: Number, i: int) -> Number:
     """Return the number in a lane of a vector."""
     return value
 
 
-def with_lane(value, i, number):
+def with_lane(value: Number, i: int, number: Number) -> Number:
     """Return a vector with another number in a lane."""
     return number
 
@@ -124,17 +157,17 @@ def with_lane(value, i, number):
 # Compiled versions for numbers of one run; those for vectors are in `vectors`.
 
 
-def _for_numbers(function, accepts):
+def _for_numbers(function: Any, accepts: Any) -> Any:
     """Let compiled code call the plain function on numbers."""
 
-    def implementation(*kinds):
+    def implementation(*kinds: Any) -> Any:
         return function if accepts(*kinds) else None
 
-    implementation.__signature__ = inspect.signature(function)
+    implementation.__signature__ = inspect.signature(function)  # type: ignore[attr-defined]
     overload(function)(implementation)
 
 
-def _is_number(*kinds):
+def _is_number(*kinds: Any) -> bool:
     return all(isinstance(kind, (types.Number, types.Boolean)) for kind in kinds)
 
 
@@ -142,62 +175,67 @@ def _is_number(*kinds):
 WIDTH, SHIFT = 8, 3
 
 
-@overload(placed)
-def _placed(place):
-    # Constants let the compiler know all strides; converted, they have no literal types, each of which is a kind apart.
+@overloaded(placed)
+def _placed(place: Any) -> Any:
+    # Constants let the compiler know all strides.
     if isinstance(place, types.NoneType):
-        return lambda place: (0.0, types.int64(0), types.int64(1))
-    return lambda place: (spread(0.0), types.int64(0), types.int64(WIDTH))
+        return lambda place: Runs(INTEGER(0), INTEGER(1), 0.0)
+    return lambda place: Runs(INTEGER(0), INTEGER(WIDTH), spread(0.0))
 
 
-@overload(entry)
-def _entry(rows, k, row, run, like):
-    if not _is_number(like):
-        return lambda rows, k, row, run, like: load(rows, k, row, run)
-    return lambda rows, k, row, run, like: rows[k >> SHIFT, row, k & (WIDTH - 1)]
+def of_one(runs: Any) -> bool:
+    """Return whether a type of `Runs` is that of a single one."""
+    return _is_number(runs[Runs._fields.index("zero")])
 
 
-@overload(set_entry)
-def _set_entry(rows, k, row, run, value):
+@overloaded(entry)
+def _entry(rows: Any, k: Any, row: Any, runs: Any) -> Any:
+    if not of_one(runs):
+        return lambda rows, k, row, runs: load(rows, k, row, runs)
+    return lambda rows, k, row, runs: rows[k >> SHIFT, row, k & (WIDTH - 1)]
+
+
+@overloaded(set_entry)
+def _set_entry(rows: Any, k: Any, row: Any, runs: Any, value: Any) -> Any:
     if not _is_number(value):
-        return lambda rows, k, row, run, value: store(rows, k, row, run, value)
+        return lambda rows, k, row, runs, value: store(rows, k, row, runs, value)
 
-    def implementation(rows, k, row, run, value):
+    def implementation(rows: Any, k: Any, row: Any, runs: Any, value: Any) -> None:
         rows[k >> SHIFT, row, k & (WIDTH - 1)] = value
 
     return implementation
 
 
-@overload(component)
-def _component(rows, k, row, run, like):
-    if not _is_number(like):
-        return lambda rows, k, row, run, like: load(rows, row, k, run)
-    return lambda rows, k, row, run, like: rows[row, k >> SHIFT, k & (WIDTH - 1)]
+@overloaded(component)
+def _component(rows: Any, k: Any, row: Any, runs: Any) -> Any:
+    if not of_one(runs):
+        return lambda rows, k, row, runs: load(rows, row, k, runs)
+    return lambda rows, k, row, runs: rows[row, k >> SHIFT, k & (WIDTH - 1)]
 
 
-@overload(set_component)
-def _set_component(rows, k, row, run, value):
+@overloaded(set_component)
+def _set_component(rows: Any, k: Any, row: Any, runs: Any, value: Any) -> Any:
     if not _is_number(value):
-        return lambda rows, k, row, run, value: store(rows, row, k, run, value)
+        return lambda rows, k, row, runs, value: store(rows, row, k, runs, value)
 
-    def implementation(rows, k, row, run, value):
+    def implementation(rows: Any, k: Any, row: Any, runs: Any, value: Any) -> None:
         rows[row, k >> SHIFT, k & (WIDTH - 1)] = value
 
     return implementation
 
 
-@overload(held)
-def _held(array, row, run, like):
+@overloaded(held)
+def _held(array: Any, row: Any, runs: Any) -> Any:
     # The numbers of a single run lie in a row of its own.
-    return (lambda array, row, run, like: array[row]) if _is_number(like) else None
+    return (lambda array, row, runs: array[row]) if of_one(runs) else None
 
 
-@overload(hold)
-def _hold(array, row, run, value):
+@overloaded(hold)
+def _hold(array: Any, row: Any, runs: Any, value: Any) -> Any:
     if not _is_number(value):
         return None
 
-    def implementation(array, row, run, value):
+    def implementation(array: Any, row: Any, runs: Any, value: Any) -> None:
         array[row] = value
 
     return implementation

@@ -1,61 +1,62 @@
 """Runs that end before the others."""
 
-import numba
-
 from . import layout as at
 from .bookkeeping import stored_in_contacts
+from .compiled import inlined, pasted
 from .coupled import energy_of
-from .lanes import anywhere, choose, held, hold, magnitude, write
-from .modes import OPTIONS, PASTED
+from .lanes import Number, Pair, Runs, anywhere, choose, held, hold, magnitude, write
+from .parts import Carried, Contacts, Parts, Paths, Sizes
 
 # Result of a run: samples completed, reason of its end.
 COMPLETED, ENDED = range(2)
 
 
-@numba.njit(**OPTIONS)
-def leave(ended, completed, leaves, why, sample, state, run, zero):
+@inlined
+def leave(
+    ended: Number, completed: Number, leaves: Number, why: Number, sample: int, state: Carried, runs: Runs
+) -> Pair:
     """Return reasons of the end and numbers of samples of runs, where some leave now; save their contacts."""
-    newly = choose(ended > 0.0, zero, leaves) > 0.5
+    newly = choose(ended > 0.0, runs.zero, leaves) > 0.5
     for row in range(state.carried.shape[0]):
-        kept = choose(newly, held(state.carried, row, run, zero), held(state.at_end, row, run, zero))
-        hold(state.at_end, row, run, kept)
-    return choose(newly, why, ended), choose(newly, zero + sample, completed)
+        kept = choose(newly, held(state.carried, row, runs), held(state.at_end, row, runs))
+        hold(state.at_end, row, runs, kept)
+    return choose(newly, why, ended), choose(newly, runs.zero + sample, completed)
 
 
-@numba.njit(**OPTIONS)
-def beyond_ends(i, place, contacts, state, run, zero):
+@inlined
+def beyond_ends(i: int, place: Number, contacts: Contacts, state: Carried, runs: Runs) -> Pair:
     """Return where contact `i` is beyond the ends of its path, and why: by its motion, or because it diverges."""
     base = i * at.CONTACT_CONSTANTS
-    low, high = held(contacts.constants, base + at.LOW, run, zero), held(contacts.constants, base + at.HIGH, run, zero)
-    leaves = choose(choose(place > low, high - place, zero) > 0.0, zero, 1.0)
+    low, high = held(contacts.constants, base + at.LOW, runs), held(contacts.constants, base + at.HIGH, runs)
+    leaves = choose(choose(place > low, high - place, runs.zero) > 0.0, runs.zero, 1.0)
     if not anywhere(leaves > 0.5):
         return leaves, leaves
     # A tip that crosses the whole track in one step diverges.
-    within = magnitude(place - held(state.carried, i * at.CARRIED + at.ABSCISSA, run, zero)) < high - low
-    return leaves, choose(within, zero + at.OFF_TRACK, zero + at.NOT_FINITE)
+    within = magnitude(place - held(state.carried, i * at.CARRIED + at.ABSCISSA, runs)) < high - low
+    return leaves, choose(within, runs.zero + at.OFF_TRACK, runs.zero + at.NOT_FINITE)
 
 
-@numba.njit(**OPTIONS)
-def any_beyond_ends(sizes, paths, contacts, state, run, zero):
+@inlined
+def any_beyond_ends(sizes: Sizes, paths: Paths, contacts: Contacts, state: Carried, runs: Runs) -> Pair:
     """Return where any contact is beyond the ends of its path, and why."""
-    leaves, why = zero, zero
+    leaves, why = runs.zero, runs.zero
     for i in range(sizes.contacts):
         if paths.path_of[i] >= 0:
-            place = held(contacts.now, i * at.IN_STEP + at.PLACE, run, zero)
-            here, because = beyond_ends(i, place, contacts, state, run, zero)
+            place = held(contacts.now, i * at.IN_STEP + at.PLACE, runs)
+            here, because = beyond_ends(i, place, contacts, state, runs)
             leaves, why = choose(here > 0.5, here, leaves), choose(here > 0.5, because, why)
     return leaves, why
 
 
-@numba.njit(**PASTED)
-def end(parts, ended, completed, run, zero):
+@pasted
+def end(parts: Parts, ended: Number, completed: Number, runs: Runs) -> None:
     """Record the results of the runs; restore the contacts of ended runs to those at their end."""
     carried, stops = parts.state.carried, parts.records.stops
-    write(stops, COMPLETED, run, choose(ended > 0.0, completed, zero + parts.records.energies.shape[0]))
-    write(stops, ENDED, run, ended)
+    write(stops, COMPLETED, runs.first, choose(ended > 0.0, completed, runs.zero + parts.records.energies.shape[0]))
+    write(stops, ENDED, runs.first, ended)
     for row in range(carried.shape[0]):
-        kept = choose(ended > 0.0, held(parts.state.at_end, row, run, zero), held(carried, row, run, zero))
-        hold(carried, row, run, kept)
-    stored = energy_of(parts.modes, parts.sizes, run, zero)
-    stored += stored_in_contacts(parts.contacts, carried, parts.sizes.contacts, run, zero)
-    hold(parts.state.energies, at.STORED, run, stored)
+        kept = choose(ended > 0.0, held(parts.state.at_end, row, runs), held(carried, row, runs))
+        hold(carried, row, runs, kept)
+    stored = energy_of(parts.modes, parts.sizes, runs)
+    stored += stored_in_contacts(parts.contacts, carried, parts.sizes.contacts, runs)
+    hold(parts.state.energies, at.STORED, runs, stored)

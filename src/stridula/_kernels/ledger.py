@@ -1,9 +1,9 @@
 """Check of the energy ledger over a chunk of a march."""
 
-import numba
 import numpy as np
 
-from .friction import STRICT
+from .compiled import entry, strict
+from .lanes import Array
 from .layout import (
     CONTACT_WORK,
     CONVECTION_WORK,
@@ -24,16 +24,26 @@ LEDGER_TOLERANCE = 1e-8
 CONTACT_TOLERANCE = 1e-2
 
 
-@numba.njit(nogil=True, **STRICT)
-def keep_beside(chunk, samples, rows, first):
+@entry
+def keep_beside(chunk: Array, samples: int, rows: Array, first: int) -> None:
     """Copy the energies of one of several runs side by side, (samples, energies), to rows from a sample on."""
     for sample in range(samples):
         for k in range(ENERGIES):
             rows[k, first + sample] = chunk[sample, k]
 
 
-@numba.njit(nogil=True, **STRICT)
-def believed(rows, first, samples, before, initial, largest, of_loads, dissipative, damped_alone):
+@entry
+def believed(
+    rows: Array,
+    first: int,
+    samples: int,
+    before: Array,
+    initial: float,
+    largest: float,
+    of_loads: float,
+    dissipative: bool,
+    damped_alone: bool,
+) -> tuple[int, int, float]:
     """Return the number of reliable samples from one on, the reason of their end or -1, and the largest energy.
 
     The ledger must close, the stored energy stay above zero, and the contacts take energy on the whole; where they
@@ -50,8 +60,18 @@ def believed(rows, first, samples, before, initial, largest, of_loads, dissipati
     return (samples, -1, met) if wrong < 0 else (wrong, ENERGY_CREATED, largest)
 
 
-@numba.njit(**STRICT)
-def _created(rows, first, samples, before, initial, largest, of_loads, dissipative, damped_alone):
+@strict
+def _created(
+    rows: Array,
+    first: int,
+    samples: int,
+    before: Array,
+    initial: float,
+    largest: float,
+    of_loads: float,
+    dissipative: bool,
+    damped_alone: bool,
+) -> tuple[int, float]:
     """Return the first sample at which energy was created, -1 if there is none, and the largest energy."""
     met, friction, damping = largest, before[FRICTION_LOSS], before[DAMPING_LOSS]
     for sample in range(first, first + samples):

@@ -5,17 +5,16 @@ Steps 1 to 6 in docstrings and comments of this package are those of *Contact in
 
 import math
 
-import numba
-import numpy as np
-
 from . import layout as at
 from .block_rows import CONTACTS, SINE
 from .bookkeeping import credit, stored_in_contacts
+from .compiled import entry, pasted
+from .contact_values import Compliance, Touch
 from .coupled import energy_of
-from .lanes import anywhere, choose, everywhere, hold, magnitude, placed
+from .lanes import INTEGER, TRUTH, Runs, anywhere, choose, everywhere, hold, magnitude, placed
 from .leaving import end, leave
 from .loads import change_loads, credit_loads, differ
-from .modes import ENTRY, PASTED
+from .parts import Parts
 from .recording import begin_sample, height_of, keep_probes_at, record_contact, record_energies, remember_probes
 from .several import keep_many, touch_many
 from .single import keep_one, touch_one
@@ -23,93 +22,92 @@ from .trying import complete_one, gap_of
 from .turning import credit_turning, turn_bodies
 
 
-@numba.njit(**PASTED)
-def begin(parts, run, zero):
+@pasted
+def begin(parts: Parts, runs: Runs) -> None:
     """Save the initial values of the probes."""
     first = CONTACTS + 2 * parts.sizes.contacts + 2 * parts.sizes.loads
     probes = parts.probes
-    remember_probes(parts.modes.rows, first, probes.kinds, probes.spans, probes.last, run, zero)
+    remember_probes(parts.modes.rows, first, probes.kinds, probes.spans, probes.last, runs)
 
 
-@numba.njit(**PASTED)
-def begin_row(parts, run, zero):
+@pasted
+def begin_row(parts: Parts, runs: Runs) -> None:
     """Begin the sums of a sample."""
-    begin_sample(parts.contacts.sums, parts.state.carried, parts.sizes.contacts, run, zero)
-    hold(parts.state.energies, at.ITERATIONS, run, zero)
-    hold(parts.state.energies, at.UNSOLVED, run, zero)
+    begin_sample(parts.contacts.sums, parts.state.carried, parts.sizes.contacts, runs)
+    hold(parts.state.energies, at.ITERATIONS, runs, runs.zero)
+    hold(parts.state.energies, at.UNSOLVED, runs, runs.zero)
 
 
-@numba.njit(**PASTED)
-def record_row(parts, sample, n, run, runs, zero):
+@pasted
+def record_row(parts: Parts, sample: int, n: int, runs: Runs) -> None:
     """Record energies and contacts after the steps of a sample."""
     contacts, paths, timing, state = parts.contacts, parts.paths, parts.timing, parts.state
-    record_energies(state.energies, parts.records.energies, sample, run, runs, zero)
+    record_energies(state.energies, parts.records.energies, sample, runs)
     after = n + 1 if parts.imposed.motion.shape[0] > 1 else 0
     for i in range(parts.sizes.contacts):
-        height = gap_of(i, contacts.constants, parts.imposed.motion, after, run, runs, zero)
-        height += height_of(parts.modes.rows, i, paths.spans, paths.first_span[i], paths.first_span[i + 1], run, zero)
+        height = gap_of(i, contacts.constants, parts.imposed.motion, after, runs)
+        height += height_of(parts.modes.rows, i, paths.spans, paths.first_span[i], paths.first_span[i + 1], runs)
         record, steps = parts.records.contacts, timing.steps_per_sample
-        record_contact(i, contacts.sums, state.carried, height, steps, timing.step, record, sample, run, runs, zero)
+        record_contact(i, contacts.sums, state.carried, height, steps, timing.step, record, sample, runs)
 
 
-@numba.njit(**ENTRY)
-def march(single, several, space, place, parts):
+@entry
+def march(single: bool | None, several: bool | None, space: bool | None, place: tuple[int, int], parts: Parts) -> None:
     """March through the samples of the records, or until all runs have ended.
 
-    Quantities of a run have a column for each run; several numbers of a kind have groups of columns. `zero` has the
-    type of the numbers of a run: a number, or a vector of several runs; `run` is the first of these runs, `runs` the
-    number of columns. All three follow from `place`, as in `lanes.placed`. `several` is None for a single contact
-    between bodies of uncoupled modes that do not turn, else `single` is None; `space` is None where no body
-    turns and every contact has one tangent. Only the steps of one kind are compiled.
+    Quantities of a run have a column for each run; several numbers of a kind have groups of columns. The runs that
+    march together follow from `place`, as in `lanes.placed`. `several` is None for a single contact between bodies of
+    uncoupled modes that do not turn, else `single` is None; `space` is None where no body turns and every contact has
+    one tangent. Only the steps of one kind are compiled.
     """
-    zero, run, runs = placed(place)
+    runs = placed(place)
+    zero = runs.zero
     sizes, timing, signals = parts.sizes, parts.timing, parts.imposed.signals
-    begin(parts, run, zero)
+    begin(parts, runs)
     ended, completed = zero, zero
-    touch, free, w = (zero, zero, zero, zero), (zero, zero, zero), (zero, zero, zero, zero)
-    # Converted, constants have no literal types, for each of which functions would be compiled again.
-    n, pending, sine, advance = np.int64(0), np.bool_(False), np.int64(SINE), zero
+    touch, free, w = Touch(zero, zero, zero, zero), (zero, zero, zero), Compliance(zero, zero, zero, zero)
+    n, pending, sine, advance = INTEGER(0), TRUTH(False), INTEGER(SINE), zero
     for sample in range(parts.records.energies.shape[0]):
-        begin_row(parts, run, zero)
+        begin_row(parts, runs)
         for i in range(timing.steps_per_sample):
-            change_loads(parts, n, run, runs, zero)
+            change_loads(parts, n, runs)
             if single is not None:
                 loop = (touch, pending, sine, advance)
-                free, w, touch, leaves, why = touch_one(parts, n, loop, ended, run, runs, zero)
+                free, w, touch, leaves, why = touch_one(parts, n, loop, ended, runs)
                 sine = 2 - sine
             if several is not None:
                 if space is not None:
-                    turn_bodies(parts, n, run, runs, zero)
-                leaves, why = touch_many(space, parts, n, ended, run, runs, zero)
+                    turn_bodies(parts, n, runs)
+                leaves, why = touch_many(space, parts, n, ended, runs)
             if anywhere(leaves > 0.5):
-                ended, completed = leave(ended, completed, leaves, why, sample, parts.state, run, zero)
+                ended, completed = leave(ended, completed, leaves, why, sample, parts.state, runs)
                 if everywhere(ended > 0.0):
                     break
             if single is not None:
-                advance = keep_one(parts, n, free, w, touch, run, runs, zero)
+                advance = keep_one(parts, n, free, w, touch, runs)
                 following = i + 1 < timing.steps_per_sample
-                pending = following and not differ(signals, n + 1, sizes.loads, run, runs, zero)
+                pending = following and not differ(signals, n + 1, sizes.loads, runs)
                 if not pending:
-                    done = complete_one(parts.modes, parts.paths, touch, sine, run, zero)
-                    credit(parts.state.energies, done[0], done[1], done[2] * advance, run, zero)
+                    done = complete_one(parts.modes, parts.paths, touch, sine, runs)
+                    credit(parts.state.energies, done[0], done[1], done[2] * advance, runs)
             if several is not None:
-                keep_many(space, parts, n, run, runs, zero)
+                keep_many(space, parts, n, runs)
                 if space is not None:
-                    credit_turning(parts, run, zero)
+                    credit_turning(parts, runs)
             if not pending:
-                keep_probes_at(parts, n, run, runs, zero)
+                keep_probes_at(parts, n, runs)
             n += 1
         if everywhere(ended > 0.0):
             break
-        credit_loads(parts, n, run, runs, zero)
-        stored = energy_of(parts.modes, sizes, run, zero)
-        stored += stored_in_contacts(parts.contacts, parts.state.carried, sizes.contacts, run, zero)
-        hold(parts.state.energies, at.STORED, run, stored)
+        credit_loads(parts, n, runs)
+        stored = energy_of(parts.modes, sizes, runs)
+        stored += stored_in_contacts(parts.contacts, parts.state.carried, sizes.contacts, runs)
+        hold(parts.state.energies, at.STORED, runs, stored)
         finite = choose(ended > 0.0, zero, magnitude(stored)) < math.inf
         if not everywhere(finite):
             leaves, why = choose(finite, zero, 1.0), zero + at.NOT_FINITE
-            ended, completed = leave(ended, completed, leaves, why, sample, parts.state, run, zero)
+            ended, completed = leave(ended, completed, leaves, why, sample, parts.state, runs)
             if everywhere(ended > 0.0):
                 break
-        record_row(parts, sample, n, run, runs, zero)
-    end(parts, ended, completed, run, zero)
+        record_row(parts, sample, n, runs)
+    end(parts, ended, completed, runs)

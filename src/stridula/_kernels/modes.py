@@ -10,10 +10,6 @@ the next one (step 1), so that the modes are read once a step (`pass_fixed`, `pa
 step is tried, the displacements of all contacts are summed, and the step is completed under the push of all.
 """
 
-from typing import Any
-
-import numba
-
 from . import layout as at
 from .block_rows import (
     AMPLITUDE,
@@ -34,43 +30,36 @@ from .block_rows import (
     D,
     Q,
 )
-from .lanes import entry, fused, load, spread, store, total
-
-# No reference counting: arrays come from Python and stay.
-SHARED: dict[str, Any] = {"cache": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
-# No wrapper for callers in Python, which takes a sixth of the compilation: called from there, these functions crash.
-INNER: dict[str, Any] = {**SHARED, "no_cpython_wrapper": True, "fastmath": False}
-# Strict arithmetic: a step is the same to the last bit wherever it is completed.
-OPTIONS: dict[str, Any] = {**INNER, "forceinline": True}
-# For functions that mainly call others, inlined as Python: compiled apart, all that they call would be optimised again.
-PASTED: dict[str, Any] = {**INNER, "inline": "always"}
-# For functions called from Python, which let other threads run.
-ENTRY: dict[str, Any] = {**SHARED, "nogil": True, "fastmath": False}
+from .compiled import inlined
+from .lanes import Array, Numbers, Pair, Runs, entry, fused, load, spread, store, total
+from .parts import Modes, Paths
 
 
-@numba.njit(**OPTIONS)
-def block_at(rows, k, run):
+@inlined
+def block_at(rows: Array, k: int, runs: Runs) -> Numbers:
     """Return position, last increment, share kept, stiffness and load of a block."""
     return (
-        load(rows, k, Q, run),
-        load(rows, k, D, run),
-        load(rows, k, KEPT, run),
-        load(rows, k, STIFFNESS, run),
-        load(rows, k, FORCE, run),
+        load(rows, k, Q, runs),
+        load(rows, k, D, runs),
+        load(rows, k, KEPT, runs),
+        load(rows, k, STIFFNESS, runs),
+        load(rows, k, FORCE, runs),
     )
 
 
-@numba.njit(**OPTIONS)
-def complete(rows, k, run, q, d, increment):
+@inlined
+def complete(rows: Array, k: int, runs: Runs, q: float, d: float, increment: float) -> Pair:
     """Complete the step of a block by an increment (step 6); return the position and the sum of both increments."""
     q = q + increment
-    store(rows, k, Q, run, q)
-    store(rows, k, D, run, increment)
+    store(rows, k, Q, runs, q)
+    store(rows, k, D, runs, increment)
     return q, increment + d
 
 
-@numba.njit(**OPTIONS)
-def pass_fixed(rows, begin, end, run, pending, normal, tangential):
+@inlined
+def pass_fixed(
+    rows: Array, begin: int, end: int, runs: Runs, pending: bool, normal: float, tangential: float
+) -> Numbers:
     """Complete a pending step of modes with constant rows (step 6) and try the next (step 1).
 
     Returns
@@ -81,12 +70,12 @@ def pass_fixed(rows, begin, end, run, pending, normal, tangential):
     """
     along, across, works, losses = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     for k in range(begin, end):
-        q, d, kept, stiffness, force = block_at(rows, k, run)
-        upright, level = load(rows, k, NORMAL, run), load(rows, k, TANGENTIAL, run)
+        q, d, kept, stiffness, force = block_at(rows, k, runs)
+        upright, level = load(rows, k, NORMAL, runs), load(rows, k, TANGENTIAL, runs)
         if pending:
             push = fused(upright, normal, -level * tangential)
             increment = fused(kept, d, fused(-stiffness, q, force + push))
-            q, both = complete(rows, k, run, q, d, increment)
+            q, both = complete(rows, k, runs, q, d, increment)
             d = increment
             works = fused(push, both, works)
             losses = fused((1.0 - kept) * both, both, losses)
@@ -96,35 +85,41 @@ def pass_fixed(rows, begin, end, run, pending, normal, tangential):
     return along, across, works, losses
 
 
-@numba.njit(**OPTIONS)
-def trace_of(rows, k, waves, here, number, products, sine, cosines, run, like):
+@inlined
+def trace_of(
+    rows: Array, k: int, waves: Array, here: int, number: int, products: int, sine: int, cosines: int, runs: Runs
+) -> float:
     """Return the displacement of a path for a unit of the modes in block `k`, by the waves in rows from `sine` on.
 
     `here` is the block of the waves along the path, `number` the entry of the wave across it.
     """
     if not products:
-        return load(rows, k, AMPLITUDE, run) * load(waves, here, sine + cosines, run)
-    trace = (load(rows, k, AMPLITUDE, run) * load(waves, here, sine + 1 - cosines, run)) * entry(
-        waves, number, sine, run, like
+        return load(rows, k, AMPLITUDE, runs) * load(waves, here, sine + cosines, runs)
+    trace = (load(rows, k, AMPLITUDE, runs) * load(waves, here, sine + 1 - cosines, runs)) * entry(
+        waves, number, sine, runs
     )
     if products > 1:
-        other = load(rows, k, OTHER_AMPLITUDE, run) * load(waves, here, sine + cosines, run)
-        trace = fused(other, entry(waves, number, sine + 1, run, like), trace)
+        other = load(rows, k, OTHER_AMPLITUDE, runs) * load(waves, here, sine + cosines, runs)
+        trace = fused(other, entry(waves, number, sine + 1, runs), trace)
     return trace
 
 
-@numba.njit(**OPTIONS)
-def slope_of(rows, k, waves, here, number, products, sine, cosines, run, like):
+@inlined
+def slope_of(
+    rows: Array, k: int, waves: Array, here: int, number: int, products: int, sine: int, cosines: int, runs: Runs
+) -> float:
     """Return the derivative along a path of `trace_of`."""
     if not products:
-        return load(rows, k, SLOPE, run) * load(waves, here, sine + 1 - cosines, run)
-    slope = (load(rows, k, SLOPE, run) * load(waves, here, sine + cosines, run)) * entry(waves, number, sine, run, like)
-    other = load(rows, k, OTHER_SLOPE, run) * load(waves, here, sine + 1 - cosines, run)
-    return fused(other, entry(waves, number, sine + 1, run, like), slope)
+        return load(rows, k, SLOPE, runs) * load(waves, here, sine + 1 - cosines, runs)
+    slope = (load(rows, k, SLOPE, runs) * load(waves, here, sine + cosines, runs)) * entry(waves, number, sine, runs)
+    other = load(rows, k, OTHER_SLOPE, runs) * load(waves, here, sine + 1 - cosines, runs)
+    return fused(other, entry(waves, number, sine + 1, runs), slope)
 
 
-@numba.njit(**OPTIONS)
-def pass_waves(modes, paths, s, run, pending, pull, last, now, like):
+@inlined
+def pass_waves(
+    modes: Modes, paths: Paths, s: int, runs: Runs, pending: bool, pull: float, last: int, now: int
+) -> Numbers:
     """Complete a pending step of the modes of span `s` under a force (step 6), and try the next (steps 1 to 4).
 
     `last` and `now` are the first rows of the waves at the contact in the step completed and in the next.
@@ -140,125 +135,125 @@ def pass_waves(modes, paths, s, run, pending, pull, last, now, like):
     trace, softness, slopes = spread(0.0), spread(0.0), spread(0.0)
     works, losses = spread(0.0), spread(0.0)
     for k in range(spans[s, at.BEGIN], spans[s, at.END]):
-        q, d, kept, stiffness, force = block_at(rows, k, run)
+        q, d, kept, stiffness, force = block_at(rows, k, runs)
         here, number = paths.wave_of[k], paths.sets[0, ZEROTH] + paths.across_of[k]
-        row = trace_of(rows, k, waves, here, number, products, now, cosines, run, like)
+        row = trace_of(rows, k, waves, here, number, products, now, cosines, runs)
         if pending:
-            push = pull * trace_of(rows, k, waves, here, number, products, last, cosines, run, like)
+            push = pull * trace_of(rows, k, waves, here, number, products, last, cosines, runs)
             increment = fused(kept, d, fused(-stiffness, q, force + push))
-            q, both = complete(rows, k, run, q, d, increment)
+            q, both = complete(rows, k, runs, q, d, increment)
             d = increment
             works = fused(push, both, works)
             losses = fused((1.0 - kept) * both, both, losses)
-            slope = slope_of(rows, k, waves, here, number, products, last, cosines, run, like)
+            slope = slope_of(rows, k, waves, here, number, products, last, cosines, runs)
             slopes = fused(slope, q, slopes)
         trace = fused(row, q + fused(kept, d, fused(-stiffness, q, force)), trace)
         softness = fused(row, row, softness)
     return trace, softness, slopes, works, losses
 
 
-@numba.njit(**OPTIONS)
-def try_all(rows, begin, end, run):
+@inlined
+def try_all(rows: Array, begin: int, end: int, runs: Runs) -> None:
     """Set increment and position at the end of the step without contact force in uncoupled modes (step 1)."""
     for k in range(begin, end):
-        q, d, kept, stiffness, force = block_at(rows, k, run)
+        q, d, kept, stiffness, force = block_at(rows, k, runs)
         increment = fused(kept, d, fused(-stiffness, q, force))
-        store(rows, k, INCREMENT, run, increment)
-        store(rows, k, POSITION, run, q + increment)
+        store(rows, k, INCREMENT, runs, increment)
+        store(rows, k, POSITION, runs, q + increment)
 
 
-@numba.njit(**OPTIONS)
-def set_path_rows(rows, paths, i, s, row, sine, run, like):
+@inlined
+def set_path_rows(rows: Array, paths: Paths, i: int, s: int, row: int, sine: int, runs: Runs) -> None:
     """Set the row of contact `i` in span `s` to minus the trace of its path (step 2)."""
     spans, first, zeroth = paths.spans, paths.sets[i, FIRST], paths.sets[i, ZEROTH]
     products, cosines = spans[s, at.PRODUCTS], spans[s, at.COSINES]
     for k in range(spans[s, at.BEGIN], spans[s, at.END]):
         here, number = first + paths.wave_of[k], zeroth + paths.across_of[k]
-        store(rows, k, row, run, -trace_of(rows, k, paths.waves, here, number, products, sine, cosines, run, like))
+        store(rows, k, row, runs, -trace_of(rows, k, paths.waves, here, number, products, sine, cosines, runs))
 
 
-@numba.njit(**OPTIONS)
-def slope_along(rows, paths, i, s, sine, run, like):
+@inlined
+def slope_along(rows: Array, paths: Paths, i: int, s: int, sine: int, runs: Runs) -> float:
     """Return the derivative of a path's displacement along it at contact `i`, by the modes of span `s`."""
     spans, first, zeroth = paths.spans, paths.sets[i, FIRST], paths.sets[i, ZEROTH]
     products, cosines = spans[s, at.PRODUCTS], spans[s, at.COSINES]
     slopes = spread(0.0)
     for k in range(spans[s, at.BEGIN], spans[s, at.END]):
         here, number = first + paths.wave_of[k], zeroth + paths.across_of[k]
-        slope = slope_of(rows, k, paths.waves, here, number, products, sine, cosines, run, like)
-        slopes = fused(slope, load(rows, k, Q, run), slopes)
-    return total(slopes, like)
+        slope = slope_of(rows, k, paths.waves, here, number, products, sine, cosines, runs)
+        slopes = fused(slope, load(rows, k, Q, runs), slopes)
+    return total(slopes, runs.zero)
 
 
-@numba.njit(**OPTIONS)
-def clear_push(rows, blocks, run):
+@inlined
+def clear_push(rows: Array, blocks: int, runs: Runs) -> None:
     """Set the push on the modes to zero."""
     for k in range(blocks):
-        store(rows, k, PUSH, run, spread(0.0))
+        store(rows, k, PUSH, runs, spread(0.0))
 
 
-@numba.njit(**OPTIONS)
-def add_push(rows, i, begin, end, run, normal, tangential):
+@inlined
+def add_push(rows: Array, i: int, begin: int, end: int, runs: Runs, normal: float, tangential: float) -> None:
     """Add the forces of contact `i` to the push on the modes."""
     for k in range(begin, end):
-        push = fused(load(rows, k, CONTACTS + 2 * i, run), normal, load(rows, k, PUSH, run))
-        store(rows, k, PUSH, run, fused(-load(rows, k, CONTACTS + 2 * i + 1, run), tangential, push))
+        push = fused(load(rows, k, CONTACTS + 2 * i, runs), normal, load(rows, k, PUSH, runs))
+        store(rows, k, PUSH, runs, fused(-load(rows, k, CONTACTS + 2 * i + 1, runs), tangential, push))
 
 
-@numba.njit(**OPTIONS)
-def complete_all(rows, begin, end, run, zero):
+@inlined
+def complete_all(rows: Array, begin: int, end: int, runs: Runs) -> Pair:
     """Complete the step of uncoupled modes under their push (step 6); return work of the push and loss to damping."""
     works, losses = spread(0.0), spread(0.0)
     for k in range(begin, end):
-        q, d, push = load(rows, k, Q, run), load(rows, k, D, run), load(rows, k, PUSH, run)
-        _, both = complete(rows, k, run, q, d, load(rows, k, INCREMENT, run) + push)
+        q, d, push = load(rows, k, Q, runs), load(rows, k, D, runs), load(rows, k, PUSH, runs)
+        _, both = complete(rows, k, runs, q, d, load(rows, k, INCREMENT, runs) + push)
         works = fused(push, both, works)
-        losses = fused((1.0 - load(rows, k, KEPT, run)) * both, both, losses)
-    return 0.5 * total(works, zero), 0.25 * total(losses, zero)
+        losses = fused((1.0 - load(rows, k, KEPT, runs)) * both, both, losses)
+    return 0.5 * total(works, runs.zero), 0.25 * total(losses, runs.zero)
 
 
-@numba.njit(**OPTIONS)
-def set_load(rows, j, row, blocks, run, factor):
+@inlined
+def set_load(rows: Array, j: int, row: int, blocks: int, runs: Runs, factor: float) -> None:
     """Add a unit load, times a factor, to the loads of this step; the first replaces them."""
     for k in range(blocks):
-        before = load(rows, k, FORCE, run) if j else spread(0.0)
-        store(rows, k, FORCE, run, fused(factor, load(rows, k, row, run), before))
+        before = load(rows, k, FORCE, runs) if j else spread(0.0)
+        store(rows, k, FORCE, runs, fused(factor, load(rows, k, row, runs), before))
 
 
-@numba.njit(**OPTIONS)
-def work_of_unit_load(rows, row, blocks, run, zero):
+@inlined
+def work_of_unit_load(rows: Array, row: int, blocks: int, runs: Runs) -> float:
     """Return the work of a constant unit load up to now, up to a constant."""
     work = spread(0.0)
     for k in range(blocks):
-        work = fused(load(rows, k, row, run), load(rows, k, Q, run) - 0.5 * load(rows, k, D, run), work)
-    return total(work, zero)
+        work = fused(load(rows, k, row, runs), load(rows, k, Q, runs) - 0.5 * load(rows, k, D, runs), work)
+    return total(work, runs.zero)
 
 
-@numba.njit(**OPTIONS)
-def stored_energy(rows, begin, end, run, zero):
+@inlined
+def stored_energy(rows: Array, begin: int, end: int, runs: Runs) -> float:
     """Return the energy of uncoupled modes half a step ago."""
     energy = spread(0.0)
     for k in range(begin, end):
-        q, d = load(rows, k, Q, run), load(rows, k, D, run)
-        energy += (0.5 + 0.5 * load(rows, k, KEPT, run)) * d * d + load(rows, k, STIFFNESS, run) * q * (q - d)
-    return 0.5 * total(energy, zero)
+        q, d = load(rows, k, Q, runs), load(rows, k, D, runs)
+        energy += (0.5 + 0.5 * load(rows, k, KEPT, runs)) * d * d + load(rows, k, STIFFNESS, runs) * q * (q - d)
+    return 0.5 * total(energy, runs.zero)
 
 
-@numba.njit(**OPTIONS)
-def product(rows, row, other, begin, end, run, zero):
+@inlined
+def product(rows: Array, row: int, other: int, begin: int, end: int, runs: Runs) -> float:
     """Return the product of two rows over a span of blocks."""
     value = spread(0.0)
     for k in range(begin, end):
-        value = fused(load(rows, k, row, run), load(rows, k, other, run), value)
-    return total(value, zero)
+        value = fused(load(rows, k, row, runs), load(rows, k, other, runs), value)
+    return total(value, runs.zero)
 
 
-@numba.njit(**OPTIONS)
-def two_products(rows, row, other, begin, end, run, zero):
+@inlined
+def two_products(rows: Array, row: int, other: int, begin: int, end: int, runs: Runs) -> Pair:
     """Return the products of a row and of the next one with a third over a span of blocks."""
     first, second = spread(0.0), spread(0.0)
     for k in range(begin, end):
-        factor = load(rows, k, other, run)
-        first = fused(load(rows, k, row, run), factor, first)
-        second = fused(load(rows, k, row + 1, run), factor, second)
-    return total(first, zero), total(second, zero)
+        factor = load(rows, k, other, runs)
+        first = fused(load(rows, k, row, runs), factor, first)
+        second = fused(load(rows, k, row + 1, runs), factor, second)
+    return total(first, runs.zero), total(second, runs.zero)

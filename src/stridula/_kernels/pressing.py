@@ -7,12 +7,11 @@ mean velocity on it is of second order only, and corrected by the third differen
 """
 
 import math
+from typing import Any
 
-import numba
-from numba.extending import overload
-
-from .friction import STRICT
-from .lanes import lane, spread, with_lane
+from .compiled import overloaded, strict
+from .contact_values import Indentations, Yielding
+from .lanes import Number, Numbers, Pair, lane, spread, with_lane
 from .vectors import LANES, VECTOR
 
 # Change of the indentation, relative to its mean, below which the quotient is computed by its series.
@@ -32,16 +31,16 @@ NODES = (-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363
 WEIGHTS = (0.3478548451374538, 0.6521451548625461, 0.6521451548625461, 0.3478548451374538)
 
 
-@numba.njit(**STRICT)
-def power(x, exponent):
+@strict
+def power(x: float, exponent: float) -> float:
     """Return a power of a number that is not negative."""
     if exponent == 1.5:
         return x * math.sqrt(x)
     return x if exponent == 1.0 else x**exponent
 
 
-@numba.njit(**STRICT)
-def quotient(x, before, exponent):
+@strict
+def quotient(x: float, before: float, exponent: float) -> Pair:
     """Return ``(U(x) - U(before)) / (x - before)`` for ``U' = x^exponent`` from zero on, and its slope in x."""
     inside, was = max(x, 0.0), max(before, 0.0)
     mean, change = 0.5 * (inside + was), x - before
@@ -57,8 +56,8 @@ def quotient(x, before, exponent):
     return force, (power(inside, exponent) - force) / change
 
 
-@numba.njit(**STRICT)
-def press_by_quotient(x, before, yields, step):
+@strict
+def press_by_quotient(x: float, before: float, yields: Yielding, step: float) -> Pair:
     """Return the force of an indentation by the quotient of energies, and its slope."""
     stiffness, exponent, damping, rate, _ = yields
     force, slope = quotient(x, before, exponent)
@@ -70,8 +69,8 @@ def press_by_quotient(x, before, yields, step):
     return total, stiffness * slope * (1.0 + rate * velocity) + (0.5 * braked / step if x > 0.0 else 0.0)
 
 
-@numba.njit(**STRICT)
-def roots(bent, sloped, level):
+@strict
+def roots(bent: float, sloped: float, level: float) -> Pair:
     """Return the real roots of ``level + sloped s + bent s²``, 2 in place of those that do not exist."""
     if bent == 0.0:
         return (-level / sloped if sloped != 0.0 else 2.0), 2.0
@@ -82,14 +81,14 @@ def roots(bent, sloped, level):
     return half / bent, (level / half if half != 0.0 else 2.0)
 
 
-@numba.njit(**STRICT)
-def nearest_above(low, high, one):
+@strict
+def nearest_above(low: float, high: float, one: float) -> float:
     """Return `one` where it lies between the other two, else `high`."""
     return one if low < one < high else high
 
 
-@numba.njit(**STRICT)
-def press_on_piece(low, high, path, yields, step):
+@strict
+def press_on_piece(low: float, high: float, path: Numbers, yields: Yielding, step: float) -> Pair:
     """Return the force on a piece of the path, in steps from -1 to 1, and its slope in the indentation of step n + 1.
 
     Within a piece the contact is closed or open, and the force is positive or none.
@@ -115,8 +114,8 @@ def press_on_piece(low, high, path, yields, step):
     return force, slope
 
 
-@numba.njit(**STRICT)
-def press_on_path(x, now, before, yields, step):
+@strict
+def press_on_path(x: float, now: float, before: float, yields: Yielding, step: float) -> Pair:
     """Return the force over a step and its slope in x, for the indentations of steps n + 1, n and n - 1.
 
     Only a linear stiffness has a dashpot, and no damping rate beside it.
@@ -156,29 +155,29 @@ def press_on_path(x, now, before, yields, step):
     return force, slope
 
 
-@numba.njit(**STRICT)
-def share_of_quotient(x, now, before, yields):
+@strict
+def share_of_quotient(x: float, now: float, before: float, yields: Yielding) -> float:
     """Return the share of the force by the quotient of energies, for the indentation `x` without force."""
     deepest = max(x, now, before)
     if deepest <= 0.0:
         return 0.0
-    steepness = yields[4] * yields[0] * yields[1] * power(deepest, yields[1]) / deepest
+    steepness = yields.reach * yields.stiffness * yields.exponent * power(deepest, yields.exponent) / deepest
     return 1.0 - RESOLVED / steepness if steepness > RESOLVED else 0.0
 
 
-@numba.njit(**STRICT)
-def damping_corrected(path, yields, step):
+@strict
+def damping_corrected(path: Indentations, yields: Yielding, step: float) -> float:
     """Return the damping that is corrected in a step: none unless the contact was closed in the last three."""
     _, _, damping, rate, reach = yields
-    if (damping == 0.0 and rate == 0.0) or min(path[0], path[1], path[2]) <= 0.0:
+    if (damping == 0.0 and rate == 0.0) or min(path.now, path.before, path.earlier) <= 0.0:
         return 0.0
-    braked = damping + rate * yields[0] * power(path[0], yields[1])
+    braked = damping + rate * yields.stiffness * power(path.now, yields.exponent)
     size = reach * braked / step
     return braked * min(max(2.0 - size / CORRECTED, 0.0), 1.0)
 
 
-@numba.njit(**STRICT)
-def press_corrected(x, path, yields, step):
+@strict
+def press_corrected(x: float, path: Indentations, yields: Yielding, step: float) -> Pair:
     """Return the force on the path, with its damping corrected, and its slope.
 
     The mean velocity is too large by a twelfth of the third difference, taken half a step late. Across a jump of the
@@ -198,13 +197,13 @@ def press_corrected(x, path, yields, step):
     return share * force, share * slope
 
 
-@numba.njit(**STRICT)
-def press_one(x, path, yields, share, step):
+@strict
+def press_one(x: float, path: Indentations, yields: Yielding, share: float, step: float) -> Pair:
     """Return the force of an indentation and its slope.
 
     `path` are the indentations of the last three steps, the latest first, `share` that of the quotient of energies.
     """
-    before = path[1]
+    before = path.before
     force, slope = press_corrected(x, path, yields, step)
     if share == 0.0:
         return force, slope
@@ -212,8 +211,8 @@ def press_one(x, path, yields, share, step):
     return force + share * (other - force), slope + share * (steeper - slope)
 
 
-@numba.njit(**STRICT)
-def between(x, now, exponent):
+@strict
+def between(x: float, now: float, exponent: float) -> float:
     """Return the energy per stiffness stored between two steps, given the indentations at both.
 
     A sixth of it is the mean of the energies at the two steps; the rest is the energy at their geometric mean, which
@@ -226,80 +225,86 @@ def between(x, now, exponent):
     return energy / (6.0 * (exponent + 1.0))
 
 
-@numba.njit(**STRICT)
-def stored_in_one(x, now, stiffness, exponent):
+@strict
+def stored_in_one(x: float, now: float, stiffness: float, exponent: float) -> float:
     """Do `stored_in` for one run."""
     return stiffness * between(x, now, exponent) if stiffness > 0.0 else 0.0
 
 
-def share_of(x, path, yields):
+def share_of(x: float, path: Indentations, yields: Yielding) -> float:
     """Return the shares of the forces by quotients of energies."""
-    return share_of_quotient(x, path[0], path[1], yields)
+    return share_of_quotient(x, path.now, path.before, yields)
 
 
-def press(x, path, yields, share, step):
+def press(x: float, path: Indentations, yields: Yielding, share: float, step: float) -> Pair:
     """Return the forces of indentations and their slopes."""
     return press_one(x, path, yields, share, step)
 
 
-def stored_in(x, now, yields):
+def stored_in(x: float, now: float, yields: Yielding) -> float:
     """Return the energies stored in contacts between two steps, given the indentations at both."""
-    return stored_in_one(x, now, yields[0], yields[1])
+    return stored_in_one(x, now, yields.stiffness, yields.exponent)
 
 
-@numba.njit(**STRICT)
-def lane_of_yields(yields, i):
+@strict
+def lane_of_yields(yields: Yielding, i: int) -> Yielding:
     """Return stiffness, exponent, damping, damping rate and reach in a lane."""
-    return lane(yields[0], i), lane(yields[1], i), lane(yields[2], i), lane(yields[3], i), lane(yields[4], i)
+    return Yielding(
+        lane(yields.stiffness, i),
+        lane(yields.exponent, i),
+        lane(yields.damping, i),
+        lane(yields.rate, i),
+        lane(yields.reach, i),
+    )
 
 
-@numba.njit(**STRICT)
-def share_of_runs(x, path, yields):
+@strict
+def share_of_runs(x: Number, path: Indentations, yields: Yielding) -> Number:
     """Do `share_of` for vectors of runs."""
     share = spread(0.0)
     for i in range(LANES):
-        now, before = lane(path[0], i), lane(path[1], i)
+        now, before = lane(path.now, i), lane(path.before, i)
         one = share_of_quotient(lane(x, i), now, before, lane_of_yields(yields, i))
         share = with_lane(share, i, one)
     return share
 
 
-@numba.njit(**STRICT)
-def press_runs(x, path, yields, share, step):
+@strict
+def press_runs(x: float, path: Indentations, yields: Yielding, share: float, step: float) -> Pair:
     """Do `press` for vectors of runs."""
     force, slope = spread(0.0), spread(0.0)
     for i in range(LANES):
-        own = lane(path[0], i), lane(path[1], i), lane(path[2], i)
+        own = Indentations(lane(path.now, i), lane(path.before, i), lane(path.earlier, i))
         one = press_one(lane(x, i), own, lane_of_yields(yields, i), lane(share, i), step)
         force, slope = with_lane(force, i, one[0]), with_lane(slope, i, one[1])
     return force, slope
 
 
-@numba.njit(**STRICT)
-def stored_in_runs(x, now, yields):
+@strict
+def stored_in_runs(x: float, now: Number, yields: Yielding) -> Number:
     """Do `stored_in` for vectors of runs."""
     energy = spread(0.0)
     for i in range(LANES):
-        one = stored_in_one(lane(x, i), lane(now, i), lane(yields[0], i), lane(yields[1], i))
+        one = stored_in_one(lane(x, i), lane(now, i), lane(yields.stiffness, i), lane(yields.exponent, i))
         energy = with_lane(energy, i, one)
     return energy
 
 
-@overload(share_of)
-def _share_of(x, path, yields):
+@overloaded(share_of)
+def _share_of(x: Any, path: Any, yields: Any) -> Any:
     if x is VECTOR:
         return lambda x, path, yields: share_of_runs(x, path, yields)
     return lambda x, path, yields: share_of_quotient(x, path[0], path[1], yields)
 
 
-@overload(press)
-def _press(x, path, yields, share, step):
+@overloaded(press)
+def _press(x: Any, path: Any, yields: Any, share: Any, step: Any) -> Any:
     chosen = press_runs if x is VECTOR else press_one
     return lambda x, path, yields, share, step: chosen(x, path, yields, share, step)
 
 
-@overload(stored_in)
-def _stored_in(x, now, yields):
+@overloaded(stored_in)
+def _stored_in(x: Any, now: Any, yields: Any) -> Any:
     if x is VECTOR:
         return lambda x, now, yields: stored_in_runs(x, now, yields)
     return lambda x, now, yields: stored_in_one(x, now, yields[0], yields[1])

@@ -1,40 +1,44 @@
 """Steps of a single contact between bodies of uncoupled modes."""
 
-import numba
+from typing import Any
 
 from . import layout as at
 from .bookkeeping import credit, keep_books, keep_place
-from .lanes import anywhere, choose, held, hold
+from .compiled import pasted
+from .contact_values import Compliance, Moved, Touch
+from .lanes import Array, Number, Numbers, Runs, anywhere, choose, held, hold
 from .leaving import beyond_ends
-from .modes import PASTED
+from .parts import Contacts, Parts, Timing
 from .recording import keep_probes_at
 from .solves import carried_by, strayed
 from .trying import try_one
 from .yielding import comes_close, forces_of_any, path_of, yields_of
 
 
-@numba.njit(**PASTED)
-def solve_single(free, contacts, carried, w, timing, run, zero):
+@pasted
+def solve_single(free: Numbers, contacts: Contacts, carried: Array, w: Compliance, timing: Timing, runs: Runs) -> Touch:
     """Return normal and tangential force, status and whether it jams, for a single contact (step 5)."""
     _, gap, slip = free
-    hold(contacts.now, at.GIVE, run, zero)
-    hold(contacts.now, at.BEYOND, run, zero)
-    if not anywhere(comes_close(0, gap, contacts.constants, carried, run, zero) > 0.5):
-        return zero, zero, zero, zero
-    law, at_rest = contacts.codes[0], held(contacts.constants, at.AT_REST, run, zero)
-    away, before = strayed(carried, 0, run, zero), carried_by(carried, 0, run, zero)
-    yields, path = yields_of(0, contacts.constants, run, zero), path_of(0, carried, run, zero)
-    friction = (law, contacts.laws, run, at_rest)
+    hold(contacts.now, at.GIVE, runs, runs.zero)
+    hold(contacts.now, at.BEYOND, runs, runs.zero)
+    if not anywhere(comes_close(0, gap, contacts.constants, carried, runs) > 0.5):
+        return Touch(runs.zero, runs.zero, runs.zero, runs.zero)
+    law, at_rest = contacts.codes[0], held(contacts.constants, at.AT_REST, runs)
+    away, before = strayed(carried, 0, runs), carried_by(carried, 0, runs)
+    yields, path = yields_of(0, contacts.constants, runs), path_of(0, carried, runs)
+    friction = (law, contacts.laws, runs.first, at_rest)
     normal, tangential, status, jammed, give, beyond = forces_of_any(
-        (gap, slip, away, w), friction, before, zero, timing.step, yields, path, zero
+        (gap, slip, away, w), friction, before, runs.zero, timing.step, yields, path, runs.zero
     )
-    hold(contacts.now, at.GIVE, run, give)
-    hold(contacts.now, at.BEYOND, run, beyond)
-    return normal, tangential, status, jammed
+    hold(contacts.now, at.GIVE, runs, give)
+    hold(contacts.now, at.BEYOND, runs, beyond)
+    return Touch(normal, tangential, status, jammed)
 
 
-@numba.njit(**PASTED)
-def touch_one(parts, n, loop, ended, run, runs, zero):
+@pasted
+def touch_one(
+    parts: Parts, n: int, loop: tuple[Touch, bool, int, Number], ended: Number, runs: Runs
+) -> tuple[Any, ...]:
     """Complete a pending step of a single contact (step 6), try step `n`, and solve for the forces (steps 1 to 5).
 
     `loop` are forces and status of the step before, whether it is pending, the rows of its waves, the advance since.
@@ -49,31 +53,29 @@ def touch_one(parts, n, loop, ended, run, runs, zero):
     modes, paths, contacts, state = parts.modes, parts.paths, parts.contacts, parts.state
     last, pending, sine, advance = loop
     after = n + 2 if parts.imposed.motion.shape[0] > 1 else 0
-    free, w_nn, w_tt, done = try_one(
-        modes, paths, contacts, state, parts.imposed, after, last, pending, sine, run, runs, zero
-    )
+    free, w_nn, w_tt, done = try_one(modes, paths, contacts, state, parts.imposed, after, last, pending, sine, runs)
     if pending:
-        credit(state.energies, done[0], done[1], done[2] * advance, run, zero)
-        keep_probes_at(parts, n - 1, run, runs, zero)
+        credit(state.energies, done[0], done[1], done[2] * advance, runs)
+        keep_probes_at(parts, n - 1, runs)
     # A run that has ended has no contact.
-    free = (free[0], choose(ended > 0.0, zero, free[1]), free[2])
-    w_nt = held(contacts.fixed, 1, run, zero)
-    w = (w_nn, w_nt, w_nt, choose(ended > 0.0, 1.0, w_tt))
-    leaves, why = zero, zero
+    free = (free[0], choose(ended > 0.0, runs.zero, free[1]), free[2])
+    w_nt = held(contacts.fixed, 1, runs)
+    w = Compliance(w_nn, w_nt, w_nt, choose(ended > 0.0, 1.0, w_tt))
+    leaves, why = runs.zero, runs.zero
     if parts.sizes.paths:
-        leaves, why = beyond_ends(0, free[0], contacts, state, run, zero)
-    return free, w, solve_single(free, contacts, state.carried, w, parts.timing, run, zero), leaves, why
+        leaves, why = beyond_ends(0, free[0], contacts, state, runs)
+    return free, w, solve_single(free, contacts, state.carried, w, parts.timing, runs), leaves, why
 
 
-@numba.njit(**PASTED)
-def keep_one(parts, n, free, w, touch, run, runs, zero):
+@pasted
+def keep_one(parts: Parts, n: int, free: Numbers, w: Compliance, touch: Touch, runs: Runs) -> Number:
     """Do the bookkeeping of a single contact; return half its advance in the last two steps."""
     contacts, state = parts.contacts, parts.state
-    normal, tangential = touch[0], touch[1]
-    gap, slip = free[1] + w[0] * normal - w[1] * tangential, free[2] + w[2] * normal - w[3] * tangential
-    place = free[0] + w[1] * normal - held(contacts.fixed, 2, run, zero) * tangential
-    moved = (free[1], free[2], gap, slip)
-    keep_books(0, w, touch, moved, contacts, state, parts.imposed, parts.timing, n, run, runs, zero)
-    hold(contacts.now, at.NORMAL_NOW, run, normal)
-    hold(contacts.now, at.TANGENTIAL_NOW, run, tangential)
-    return keep_place(0, state.carried, place, run, zero)
+    normal, tangential = touch.normal, touch.tangential
+    gap, slip = free[1] + w.nn * normal - w.nt * tangential, free[2] + w.tn * normal - w.tt * tangential
+    place = free[0] + w.nt * normal - held(contacts.fixed, 2, runs) * tangential
+    moved = Moved(free[1], free[2], gap, slip)
+    keep_books(0, w, touch, moved, contacts, state, parts.imposed, parts.timing, n, runs)
+    hold(contacts.now, at.NORMAL_NOW, runs, normal)
+    hold(contacts.now, at.TANGENTIAL_NOW, runs, tangential)
+    return keep_place(0, state.carried, place, runs)

@@ -9,18 +9,11 @@ in a step: ``u' = drive - pull r`` with the ratio r of the forces, ``pull`` the 
 
 import math
 
-import numba
-
 from . import layout as at
-from .friction import (
-    STRICT,
-    holding_ratio,
-    next_state,
-    ratio_after,
-    sliding_ratio,
-    speed_scale,
-    state_ratio,
-)
+from .compiled import strict, strict_pasted
+from .contact_values import Before, Compliance
+from .friction import holding_ratio, next_state, ratio_after, sliding_ratio, speed_scale, state_ratio
+from .lanes import Array, Number, Numbers, Pair
 from .law_columns import BRISTLE_STIFFNESS, FLOOR, KINETIC, SLIP_DISTANCE, SLOPE, STATIC, VELOCITY, VISCOUS
 
 # A contact that stopped slid in this step and is at rest at its end: the next step finds it sticking.
@@ -37,22 +30,24 @@ GROWTH_AT_STAGE = (1.0 / 6.0 - 0.5 * STAGE) / (1.0 - STAGE)
 NEWTON, TRIALS, SETTLED = 8, 200, 1e-13
 
 
-@numba.njit(inline="always", **STRICT)
-def moments(begin, end, first, middle, last):
+@strict_pasted
+def moments(begin: Number, end: Number, first: Number, middle: Number, last: Number) -> Pair:
     """Return the integrals of a ratio over a part with the weights ``1 - s`` and ``s``, by Simpson's rule."""
     half, size = 0.5 * (begin + end), (end - begin) / 6.0
     later = size * ((1.0 - begin) * first + 4.0 * (1.0 - half) * middle + (1.0 - end) * last)
     return later, size * (begin * first + 4.0 * half * middle + end * last)
 
 
-@numba.njit(inline="always", **STRICT)
-def ratio_of(slip, sense, law, laws, i, step):
+@strict_pasted
+def ratio_of(slip: Number, sense: Number, law: int, laws: Array, i: int, step: Number) -> Number:
     """Return the signed ratio of a set-valued law at a slip, that of incipient sliding if it is against the sense."""
     return sense * sliding_ratio(law, laws, i, max(sense * slip, 0.0) / step)
 
 
-@numba.njit(inline="always", **STRICT)
-def part_of(slip, rate, ratio, pull, law, laws, i, step):
+@strict_pasted
+def part_of(
+    slip: Number, rate: Number, ratio: Number, pull: Number, law: int, laws: Array, i: int, step: Number
+) -> Number:
     """Return the size of the next part of the way, within which the ratio of a set-valued law hardly bends.
 
     It depends continuously on its arguments, so that the solution does on those of the step.
@@ -69,8 +64,18 @@ def part_of(slip, rate, ratio, pull, law, laws, i, step):
     return max(part, 1.0 / MOST_PARTS)
 
 
-@numba.njit(**STRICT)
-def slide_through(slip, begin, drive, pull, sense, law, laws, i, step):
+@strict
+def slide_through(
+    slip: Number,
+    begin: Number,
+    drive: Pair,
+    pull: Number,
+    sense: Number,
+    law: int,
+    laws: Array,
+    i: int,
+    step: Number,
+) -> Numbers:
     """Slide from a time of the step on, under a set-valued law.
 
     `drive` are its value at the beginning of the step and its change over it.
@@ -125,8 +130,10 @@ def slide_through(slip, begin, drive, pull, sense, law, laws, i, step):
     return later, past, 0.0
 
 
-@numba.njit(inline="always", **STRICT)
-def broken_before(earlier, grows, held, sliding, sense):
+@strict_pasted
+def broken_before(
+    earlier: float, grows: float, held: Number, sliding: float, sense: Number
+) -> tuple[float, float, float]:
     """Return the past part of the ratio of a stick that broke within the last step, and its slip for a pull of one.
 
     The ratio grew from `earlier` until it was `held` and has been that of `sliding` since. The last value is the share
@@ -138,29 +145,41 @@ def broken_before(earlier, grows, held, sliding, sense):
     return past, grows * (1.0 - broke**3) / 3.0 + left * (earlier - sense * sliding), left
 
 
-@numba.njit(inline="always", **STRICT)
-def ratio_of_stick(gap, missed, w, otherwise):
+@strict_pasted
+def ratio_of_stick(gap: Number, missed: Number, w: Compliance, otherwise: Number) -> Number:
     """Return the ratio of the forces that close the gap and undo a slip, another one if they pull."""
-    pressed, held = w[1] * missed - w[3] * gap, w[0] * missed - w[2] * gap
-    return held / pressed if pressed * (w[0] * w[3] - w[1] * w[2]) > 0.0 else otherwise
+    pressed, held = w.nt * missed - w.tt * gap, w.nn * missed - w.tn * gap
+    return held / pressed if pressed * (w.nn * w.tt - w.nt * w.tn) > 0.0 else otherwise
 
 
-@numba.njit(**STRICT)
-def ratio_over_step(normal, gap, slip, strayed, w, law, laws, i, before, let_go, step):
+@strict
+def ratio_over_step(
+    normal: Number,
+    gap: Number,
+    slip: Number,
+    strayed: Number,
+    w: Compliance,
+    law: int,
+    laws: Array,
+    i: int,
+    before: Before,
+    let_go: bool,
+    step: Number,
+) -> tuple[Number, Number, int, Number]:
     """Return the ratio of forces over a step under a set-valued law, its past part, status and share of stick.
 
     `normal` is the normal force, `gap` and `slip` those without the forces of this contact; other arguments as in
     `contact.solve_contact`. A contact that sticks does so throughout the step. Whether it does, and when it breaks,
     follows from the forces with which it would stick; what it is driven by after that from its normal force.
     """
-    was, last, past = before[0], before[1], before[6]
-    pull, moved = w[3] * normal, slip + w[2] * normal
+    was, last, past = before.status, before.slip, before.past
+    pull, moved = w.tt * normal, slip + w.tn * normal
     held = holding_ratio(law, laws, i, was == STICKING and not let_go)
     driven = (moved + strayed) / pull if pull > 0.0 else math.copysign(math.inf, moved + strayed)
     needed = driven if was == SLIDING else ratio_of_stick(gap, slip + strayed, w, driven)
     if was == STICKING and last == 0.0:
         # At rest for a step or more: the force grows through the step as it did in the last one.
-        earlier = before[5] / before[4] if before[4] > 0.0 else needed
+        earlier = before.tangential / before.normal if before.normal > 0.0 else needed
         grows = needed - earlier
         if not let_go and abs(needed) <= held and abs(needed + grows) <= held:
             return needed, 0.5 * needed + grows / 3.0, STICKING, 1.0
@@ -194,14 +213,16 @@ def ratio_over_step(normal, gap, slip, strayed, w, law, laws, i, before, let_go,
             return needed, 0.5 * needed, STICKING, 1.0
         sense = 1.0 if begun > 0.0 else -1.0
         past = 0.5 * ratio_of(begun, sense, law, laws, i, step)
-    slip_at_step, drive = begun - pull * past, moved - last
-    sense = 1.0 if slip_at_step > 0.0 or (slip_at_step == 0.0 and drive > 0.0) else -1.0
-    more, rest, stuck = slide_through(slip_at_step, 0.0, (drive, 0.0), pull, sense, law, laws, i, step)
+    slip_at_step, change = begun - pull * past, moved - last
+    sense = 1.0 if slip_at_step > 0.0 or (slip_at_step == 0.0 and change > 0.0) else -1.0
+    more, rest, stuck = slide_through(slip_at_step, 0.0, (change, 0.0), pull, sense, law, laws, i, step)
     return past + more, rest, STOPPED if stuck > 0.0 else SLIDING, stuck
 
 
-@numba.njit(**STRICT)
-def velocity_after(free, pulled, guess, law, laws, i, state, time):
+@strict
+def velocity_after(
+    free: Number, pulled: Number, guess: Number, law: int, laws: Array, i: int, state: Number, time: Number
+) -> Pair:
     """Return the slip velocity ``v = free - pulled r`` and the ratio r of a law with internal state after some time.
 
     Newton's method from a guess, then a bracketed search on the scale ``sinh(y)``, so that creep and sliding share one
@@ -241,8 +262,8 @@ def velocity_after(free, pulled, guess, law, laws, i, state, time):
     return velocity, ratio_after(law, laws, i, state, velocity, time)[0]
 
 
-@numba.njit(**STRICT)
-def parts_with_state(slip, drive, pull, law, laws, i, step):
+@strict
+def parts_with_state(slip: Number, drive: Number, pull: Number, law: int, laws: Array, i: int, step: Number) -> int:
     """Return the number of parts of the way under a law with internal state."""
     if law == at.LUGRE:
         change = (abs(drive) + pull * laws[i, STATIC]) / (4.0 * laws[i, VELOCITY] * step)
@@ -252,8 +273,8 @@ def parts_with_state(slip, drive, pull, law, laws, i, step):
     return int(min(count, float(MOST_PARTS)))
 
 
-@numba.njit(inline="always", **STRICT)
-def changed_to(normal, last):
+@strict_pasted
+def changed_to(normal: Number, last: Number) -> Number:
     """Return the normal force that the friction of the last step is taken to have changed to in this one.
 
     A change that goes on is part of the growth of the drive; an impulse would not go on, so that a change counts for at
@@ -263,8 +284,17 @@ def changed_to(normal, last):
     return min(max(normal, last - most), last + most)
 
 
-@numba.njit(**STRICT)
-def ratio_with_state(normal, slip, w, law, laws, i, before, step):
+@strict
+def ratio_with_state(
+    normal: Number,
+    slip: Number,
+    w: Compliance,
+    law: int,
+    laws: Array,
+    i: int,
+    before: Before,
+    step: Number,
+) -> Numbers:
     """Return the ratio of forces over a step under a law with internal state, its past part, and the new state.
 
     Each part takes the diagonally implicit rule of two stages and second order that forgets what a stiff contact would
@@ -272,13 +302,17 @@ def ratio_with_state(normal, slip, w, law, laws, i, before, step):
     through the step as it changed in the last one, in which it was the change of the slip and the ratio: a law whose
     velocity depends on the logarithm of the force would notice its jumps.
     """
-    was, last, state, past = before[0], before[1], before[3], before[6]
-    pull, moved = w[3] * normal, slip + w[2] * normal
+    was, last, state, past = before.status, before.slip, before.state, before.past
+    pull, moved = w.tt * normal, slip + w.tn * normal
     begun, drive, grows = 0.5 * (last + moved), moved - last, 0.0
     if was == SEPARATED:
         past = 0.5 * state_ratio(law, laws, i, state, begun / step)
-    elif before[4] > 0.0:
-        grows = drive - (last - before[2]) - w[3] * changed_to(normal, before[4]) * before[5] / before[4]
+    elif before.normal > 0.0:
+        grows = (
+            drive
+            - (last - before.earlier_slip)
+            - w.tt * changed_to(normal, before.normal) * before.tangential / before.normal
+        )
     slip_now = begun - pull * past - grows / 6.0
     count = parts_with_state(slip_now, drive, pull, law, laws, i, step)
     size, later, rest, velocity = 1.0 / count, 0.0, 0.0, slip_now / step

@@ -5,12 +5,12 @@ As in `slipping`, of which this is the vector form: ``u' = drive - P r`` with th
 """
 
 import math
-
-import numba
+from typing import Any
 
 from . import layout as at
+from .compiled import strict, strict_pasted
+from .contact_values import BeforeInSpace, ComplianceInSpace
 from .friction import (
-    STRICT,
     bristle_limit,
     bristles_over,
     holding_ratio,
@@ -20,6 +20,7 @@ from .friction import (
     speed_scale,
     state_ratio,
 )
+from .lanes import Array, Number, Numbers, Pair
 from .law_columns import BRISTLE_DAMPING, BRISTLE_STIFFNESS, BRISTLE_VISCOUS
 from .slipping import (
     GROWTH_AT_STAGE,
@@ -48,52 +49,52 @@ TRIALS, SETTLED = 200, 1e-15
 BEYOND = 1e300
 
 
-@numba.njit(inline="always", **STRICT)
-def plus(first, share, second):
+@strict_pasted
+def plus(first: Pair, share: Number, second: Pair) -> Pair:
     """Return ``first + share second`` for vectors."""
     return first[0] + share * second[0], first[1] + share * second[1]
 
 
-@numba.njit(inline="always", **STRICT)
-def times(matrix, vector):
+@strict_pasted
+def times(matrix: Numbers, vector: Pair) -> Pair:
     """Return the product of a matrix, rows in turn, and a vector."""
     return matrix[0] * vector[0] + matrix[1] * vector[1], matrix[2] * vector[0] + matrix[3] * vector[1]
 
 
-@numba.njit(inline="always", **STRICT)
-def along(vector, way):
+@strict_pasted
+def along(vector: Pair, way: Pair) -> Number:
     """Return the component of a vector along a direction."""
     return vector[0] * way[0] + vector[1] * way[1]
 
 
-@numba.njit(inline="always", **STRICT)
-def size_of(vector):
+@strict_pasted
+def size_of(vector: Pair) -> Number:
     """Return the length of a vector."""
     return math.hypot(vector[0], vector[1])
 
 
-@numba.njit(inline="always", **STRICT)
-def direction_of(vector, otherwise):
+@strict_pasted
+def direction_of(vector: Pair, otherwise: Pair) -> Pair:
     """Return the direction of a vector, another one if it has none."""
     size = math.hypot(vector[0], vector[1])
     return (vector[0] / size, vector[1] / size) if size > 0.0 else otherwise
 
 
-@numba.njit(inline="always", **STRICT)
-def scaled(matrix, by):
+@strict_pasted
+def scaled(matrix: Numbers, by: Number) -> Numbers:
     """Return a matrix times a number."""
     return by * matrix[0], by * matrix[1], by * matrix[2], by * matrix[3]
 
 
-@numba.njit(inline="always", **STRICT)
-def moments_of(begin, end, first, middle, last):
+@strict_pasted
+def moments_of(begin: Number, end: Number, first: Pair, middle: Pair, last: Pair) -> tuple[Pair, Pair]:
     """Do `slipping.moments` for vectors: the integrals with ``1 - s``, then those with ``s``."""
     one, other = moments(begin, end, first[0], middle[0], last[0]), moments(begin, end, first[1], middle[1], last[1])
     return (one[0], other[0]), (one[1], other[1])
 
 
-@numba.njit(inline="always", **STRICT)
-def stage_moments(begin, size, first, second):
+@strict_pasted
+def stage_moments(begin: Number, size: Number, first: Pair, second: Pair) -> tuple[Pair, Pair]:
     """Return the integrals of the ratio of two stages over a part, with the weights of this step and of the next.
 
     The mean of the slip over the part is that of its stages.
@@ -105,8 +106,8 @@ def stage_moments(begin, size, first, second):
     return later, (size * (one * first[0] + other * second[0]), size * (one * first[1] + other * second[1]))
 
 
-@numba.njit(**STRICT)
-def undone_by(matrix, vector):
+@strict
+def undone_by(matrix: Numbers, vector: Pair) -> Pair:
     """Return the force whose displacement under a compliance is a vector, beyond all bounds where there is none."""
     a, b, c, d = matrix
     determinant, trace = a * d - b * c, a + d
@@ -122,8 +123,8 @@ def undone_by(matrix, vector):
     return BEYOND * vector[0] / size, BEYOND * vector[1] / size
 
 
-@numba.njit(inline="always", **STRICT)
-def breaks_at(ratio, grows, held):
+@strict_pasted
+def breaks_at(ratio: Pair, grows: Pair, held: Number) -> Number:
     """Return the share of a step after which a ratio that grows in a straight line from below `held` reaches it."""
     square, half = along(grows, grows), along(ratio, grows)
     missing = held * held - along(ratio, ratio)
@@ -133,8 +134,8 @@ def breaks_at(ratio, grows, held):
     return min(missing / (half + root) if half >= 0.0 else (root - half) / square, 1.0)
 
 
-@numba.njit(**STRICT)
-def slip_after(free, pull, law, laws, i, step):
+@strict
+def slip_after(free: Pair, pull: Numbers, law: int, laws: Array, i: int, step: Number) -> tuple[Pair, Pair]:
     """Return the slip ``u = free - pull r`` under a set-valued law, and its ratio: the secant method within a bracket.
 
     The ratio of incipient sliding brings it to rest.
@@ -171,8 +172,13 @@ def slip_after(free, pull, law, laws, i, step):
     return (speed * way[0], speed * way[1]), (ratio * way[0], ratio * way[1])
 
 
-@numba.njit(inline="always", **STRICT)
-def is_straight(slip, drive, pull, way):
+@strict_pasted
+def is_straight(
+    slip: Pair,
+    drive: tuple[Pair, Pair],
+    pull: Numbers,
+    way: Pair,
+) -> bool:
     """Return whether a slip stays on its line but for rounding."""
     dragged = times(pull, way)
     reach = size_of(slip) + size_of(drive[0]) + size_of(drive[1]) + size_of(dragged)
@@ -181,8 +187,18 @@ def is_straight(slip, drive, pull, way):
     return strays + abs(along(dragged, across)) <= ROUNDING * reach
 
 
-@numba.njit(**STRICT)
-def slide_straight(slip, begin, drive, pull, way, law, laws, i, step):
+@strict
+def slide_straight(
+    slip: Pair,
+    begin: Number,
+    drive: tuple[Pair, Pair],
+    pull: Numbers,
+    way: Pair,
+    law: int,
+    laws: Array,
+    i: int,
+    step: Number,
+) -> tuple[Pair, Pair, Number]:
     """Slide along a line, as in the plane."""
     drives = along(drive[0], way), along(drive[1], way)
     pulled = along(way, times(pull, way))
@@ -190,8 +206,8 @@ def slide_straight(slip, begin, drive, pull, way, law, laws, i, step):
     return (later * way[0], later * way[1]), (past * way[0], past * way[1]), stuck
 
 
-@numba.njit(**STRICT)
-def hold_from(begin, drive, pull, held):
+@strict
+def hold_from(begin: Number, drive: tuple[Pair, Pair], pull: Numbers, held: Number) -> tuple[Pair, Pair, Number]:
     """Return the ratios that hold a contact at rest from a time of the step on, until it breaks away or the step ends.
 
     Returns
@@ -213,8 +229,16 @@ def hold_from(begin, drive, pull, held):
     return later, past, end
 
 
-@numba.njit(inline="always", **STRICT)
-def part_in_space(slip, drive, pull, law, laws, i, step):
+@strict_pasted
+def part_in_space(
+    slip: Pair,
+    drive: Pair,
+    pull: Numbers,
+    law: int,
+    laws: Array,
+    i: int,
+    step: Number,
+) -> Number:
     """Return the size of the next part of the way: as `slipping.part_of`, and where the slip turns or ends, small."""
     speed = size_of(slip)
     if speed == 0.0:
@@ -226,8 +250,18 @@ def part_in_space(slip, drive, pull, law, laws, i, step):
     return max(1.0 / (1.0 / part + rate / speed), min(part, 1.0 / MOST_TURNS))
 
 
-@numba.njit(**STRICT)
-def slide_through(slip, begin, drive, pull, way, law, laws, i, step):
+@strict
+def slide_through(
+    slip: Pair,
+    begin: Number,
+    drive: tuple[Pair, Pair],
+    pull: Numbers,
+    way: Pair,
+    law: int,
+    laws: Array,
+    i: int,
+    step: Number,
+) -> tuple[Pair, Pair, Number]:
     """Slide from a time of the step on, under a set-valued law.
 
     `drive` are its value at the beginning of the step and its change over it, `way` the direction if the slip is on a
@@ -262,8 +296,8 @@ def slide_through(slip, begin, drive, pull, way, law, laws, i, step):
     return later, past, 0.0
 
 
-@numba.njit(**STRICT)
-def ratio_of_stick(gap, missed, w, otherwise):
+@strict
+def ratio_of_stick(gap: Number, missed: Pair, w: ComplianceInSpace, otherwise: Pair) -> Pair:
     """Return the ratios of the forces that close the gap and undo both slips (5b), others if they pull."""
     pressed, first, second = sticking_forces(gap, missed, w)
     if not pressed > 0.0 or max(abs(first), abs(second)) >= 0.5 * BEYOND:
@@ -271,23 +305,34 @@ def ratio_of_stick(gap, missed, w, otherwise):
     return first / pressed, second / pressed
 
 
-@numba.njit(**STRICT)
-def sticking_forces(gap, slips, w):
+@strict
+def sticking_forces(gap: Number, slips: Pair, w: ComplianceInSpace) -> Numbers:
     """Return the forces that close `gap` and undo both slips (5b), beyond all bounds if no force moves a tangent."""
     tangents = (
-        w[4] - w[3] * w[1] / w[0],
-        w[5] - w[3] * w[2] / w[0],
-        w[7] - w[6] * w[1] / w[0],
-        w[8] - w[6] * w[2] / w[0],
+        w.aa - w.an * w.na / w.nn,
+        w.ab - w.an * w.nb / w.nn,
+        w.ba - w.bn * w.na / w.nn,
+        w.bb - w.bn * w.nb / w.nn,
     )
-    first, second = undone_by(tangents, (slips[0] - w[3] * gap / w[0], slips[1] - w[6] * gap / w[0]))
+    first, second = undone_by(tangents, (slips[0] - w.an * gap / w.nn, slips[1] - w.bn * gap / w.nn))
     if max(abs(first), abs(second)) >= 0.5 * BEYOND:
-        return -gap / w[0], first, second
-    return (w[1] * first + w[2] * second - gap) / w[0], first, second
+        return -gap / w.nn, first, second
+    return (w.na * first + w.nb * second - gap) / w.nn, first, second
 
 
-@numba.njit(**STRICT)
-def after_break(earlier, needed, driven, held, drive, pull, law, laws, i, step):
+@strict
+def after_break(
+    earlier: Pair,
+    needed: Pair,
+    driven: Pair,
+    held: Number,
+    drive: tuple[Pair, Pair],
+    pull: Numbers,
+    law: int,
+    laws: Array,
+    i: int,
+    step: Number,
+) -> tuple[Any, ...]:
     """Slide on from a stick that broke within the last step; results as those of `ratio_over_step`."""
     grows = plus(needed, -1.0, earlier)
     broke = breaks_at(earlier, grows, held)
@@ -306,15 +351,27 @@ def after_break(earlier, needed, driven, held, drive, pull, law, laws, i, step):
     return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
 
 
-@numba.njit(**STRICT)
-def ratio_over_step(normal, gap, slips, strays, w, law, laws, i, before, let_go, step):
+@strict
+def ratio_over_step(
+    normal: Number,
+    gap: Number,
+    slips: Pair,
+    strays: Pair,
+    w: ComplianceInSpace,
+    law: int,
+    laws: Array,
+    i: int,
+    before: BeforeInSpace,
+    let_go: bool,
+    step: Number,
+) -> tuple[Any, ...]:
     """Return the ratios of forces over a step under a set-valued law, past parts, status and share of stick.
 
     As `slipping.ratio_over_step`; `gap` and `slips` are those without the forces of this contact.
     """
-    was, last, past = before[0], before[1], before[7]
-    pull = normal * w[4], normal * w[5], normal * w[7], normal * w[8]
-    moved = slips[0] + w[3] * normal, slips[1] + w[6] * normal
+    was, last, past = before.status, before.slip, before.past
+    pull = normal * w.aa, normal * w.ab, normal * w.ba, normal * w.bb
+    moved = slips[0] + w.an * normal, slips[1] + w.bn * normal
     held = holding_ratio(law, laws, i, was == STICKING and not let_go)
     missed = moved[0] + strays[0], moved[1] + strays[1]
     driven = undone_by(pull, missed)
@@ -322,8 +379,8 @@ def ratio_over_step(normal, gap, slips, strays, w, law, laws, i, before, let_go,
     asked = size_of(needed)
     if was == STICKING and last[0] == 0.0 and last[1] == 0.0:
         # At rest for a step or more: the force grows through the step as it did in the last one.
-        share = 1.0 / before[4] if before[4] > 0.0 else 0.0
-        earlier = (share * before[5][0], share * before[5][1]) if share > 0.0 else needed
+        share = 1.0 / before.normal if before.normal > 0.0 else 0.0
+        earlier = (share * before.tangential[0], share * before.tangential[1]) if share > 0.0 else needed
         grows = plus(needed, -1.0, earlier)
         beyond = plus(needed, 1.0, grows)
         if not let_go and asked <= held and size_of(beyond) <= held:
@@ -344,28 +401,28 @@ def ratio_over_step(normal, gap, slips, strays, w, law, laws, i, before, let_go,
         # It came to rest within the last step.
         if not let_go and 2.0 * size_of(plus(needed, -1.0, past)) <= held:
             return rests
-        drive = plus(missed, -1.0, times(pull, past))
-        drive = 2.0 * drive[0], 2.0 * drive[1]
-        way = direction_of(drive, (1.0, 0.0))
-        more, rest, stuck = slide_through((0.0, 0.0), 0.0, (drive, (0.0, 0.0)), pull, way, law, laws, i, step)
+        left = plus(missed, -1.0, times(pull, past))
+        left = 2.0 * left[0], 2.0 * left[1]
+        way = direction_of(left, (1.0, 0.0))
+        more, rest, stuck = slide_through((0.0, 0.0), 0.0, (left, (0.0, 0.0)), pull, way, law, laws, i, step)
         return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
     begun = 0.5 * (last[0] + moved[0]), 0.5 * (last[1] + moved[1])
-    drive = moved[0] - last[0], moved[1] - last[1]
+    change = moved[0] - last[0], moved[1] - last[1]
     if was != SLIDING:
         # It lands: half of its force acts before the step.
         if not let_go and asked <= held:
             return rests
-        speed, way = size_of(begun), direction_of(begun, direction_of(drive, (1.0, 0.0)))
+        speed, way = size_of(begun), direction_of(begun, direction_of(change, (1.0, 0.0)))
         friction = 0.5 * sliding_ratio(law, laws, i, speed / step)
         past = friction * way[0], friction * way[1]
     slip = plus(begun, -1.0, times(pull, past))
-    way = direction_of(slip, direction_of(drive, (1.0, 0.0)))
-    more, rest, stuck = slide_through(slip, 0.0, (drive, (0.0, 0.0)), pull, way, law, laws, i, step)
+    way = direction_of(slip, direction_of(change, (1.0, 0.0)))
+    more, rest, stuck = slide_through(slip, 0.0, (change, (0.0, 0.0)), pull, way, law, laws, i, step)
     return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
 
 
-@numba.njit(inline="always", **STRICT)
-def friction_after(law, laws, i, state, speed, time):
+@strict_pasted
+def friction_after(law: int, laws: Array, i: int, state: Pair, speed: Number, time: Number) -> Pair:
     """Return the factors of the state and of the slip velocity in the ratio of a law with internal state after a time.
 
     Both depend on the speed alone; only LuGre's bristles contribute the first.
@@ -378,8 +435,17 @@ def friction_after(law, laws, i, state, speed, time):
     return 0.0, ratio / speed if speed > 0.0 else slope
 
 
-@numba.njit(inline="always", **STRICT)
-def moved_at(speed, free, pull, law, laws, i, state, time):
+@strict_pasted
+def moved_at(
+    speed: Number,
+    free: Pair,
+    pull: Numbers,
+    law: int,
+    laws: Array,
+    i: int,
+    state: Pair,
+    time: Number,
+) -> tuple[Pair, Pair]:
     """Return the slip velocity that follows from an assumed speed, and the ratios."""
     holds, drags = friction_after(law, laws, i, state, speed, time)
     kept = holds * state[0], holds * state[1]
@@ -390,8 +456,17 @@ def moved_at(speed, free, pull, law, laws, i, state, time):
     return velocity, plus(kept, drags, velocity)
 
 
-@numba.njit(**STRICT)
-def velocity_after(free, pull, guess, law, laws, i, state, time):
+@strict
+def velocity_after(
+    free: Pair,
+    pull: Numbers,
+    guess: Number,
+    law: int,
+    laws: Array,
+    i: int,
+    state: Pair,
+    time: Number,
+) -> tuple[Pair, Pair]:
     """Return the slip velocity ``v = free - pull r`` and the ratios of a law with internal state after some time.
 
     At a given speed the law is linear in the velocity; the speed sought is that which results, on the scale
@@ -443,8 +518,8 @@ def velocity_after(free, pull, guess, law, laws, i, state, time):
     return velocity, ratio
 
 
-@numba.njit(inline="always", **STRICT)
-def state_after(law, laws, i, state, velocity, time):
+@strict_pasted
+def state_after(law: int, laws: Array, i: int, state: Pair, velocity: Pair, time: Number) -> Pair:
     """Return the internal states after some time at a constant slip velocity, exactly."""
     speed = size_of(velocity)
     if law == at.LUGRE:
@@ -454,8 +529,8 @@ def state_after(law, laws, i, state, velocity, time):
     return next_state(law, laws, i, state[0], speed, time), state[1]
 
 
-@numba.njit(**STRICT)
-def ratio_of_state(law, laws, i, state, velocity):
+@strict
+def ratio_of_state(law: int, laws: Array, i: int, state: Pair, velocity: Pair) -> Pair:
     """Return the ratios of a law with internal state at a slip velocity."""
     speed = size_of(velocity)
     if law == at.LUGRE:
@@ -469,26 +544,35 @@ def ratio_of_state(law, laws, i, state, velocity):
     return ratio * way[0], ratio * way[1]
 
 
-@numba.njit(**STRICT)
-def ratio_with_state(normal, slips, w, law, laws, i, before, step):
+@strict
+def ratio_with_state(
+    normal: Number,
+    slips: Pair,
+    w: ComplianceInSpace,
+    law: int,
+    laws: Array,
+    i: int,
+    before: BeforeInSpace,
+    step: Number,
+) -> tuple[Pair, ...]:
     """Return the ratios of forces over a step under a law with internal state, past parts, and the new states.
 
     As `slipping.ratio_with_state`.
     """
-    was, last, earlier, state, past = before[0], before[1], before[2], before[3], before[7]
-    pull = normal * w[4], normal * w[5], normal * w[7], normal * w[8]
-    moved = slips[0] + w[3] * normal, slips[1] + w[6] * normal
+    was, last, earlier, state, past = before.status, before.slip, before.earlier_slip, before.state, before.past
+    pull = normal * w.aa, normal * w.ab, normal * w.ba, normal * w.bb
+    moved = slips[0] + w.an * normal, slips[1] + w.bn * normal
     begun, drive = (0.5 * (last[0] + moved[0]), 0.5 * (last[1] + moved[1])), plus(moved, -1.0, last)
     grows = 0.0, 0.0
     if was == SEPARATED:
         past = ratio_of_state(law, laws, i, state, (begun[0] / step, begun[1] / step))
         past = 0.5 * past[0], 0.5 * past[1]
-    elif before[4] > 0.0:
-        share = changed_to(normal, before[4])
-        dragged = times((share * w[4], share * w[5], share * w[7], share * w[8]), before[5])
+    elif before.normal > 0.0:
+        share = changed_to(normal, before.normal)
+        dragged = times((share * w.aa, share * w.ab, share * w.ba, share * w.bb), before.tangential)
         grows = (
-            drive[0] - (last[0] - earlier[0]) - dragged[0] / before[4],
-            drive[1] - (last[1] - earlier[1]) - dragged[1] / before[4],
+            drive[0] - (last[0] - earlier[0]) - dragged[0] / before.normal,
+            drive[1] - (last[1] - earlier[1]) - dragged[1] / before.normal,
         )
     slip = plus(plus(begun, -1.0, times(pull, past)), -1.0 / 6.0, grows)
     squares = along(slip, slip) + along(drive, drive)

@@ -7,18 +7,17 @@ see `contact_in_space`.
 """
 
 import math
-
-import numba
-from numba.extending import overload
+from typing import Any
 
 from . import layout as at
 from .block_rows import COMPLIANCE, DISPLACEMENT
+from .compiled import inlined, overloaded, pasted, strict
 from .contact import SLIDING
 from .contact_in_space import next_on_way_of_run, slide_on_its_way
-from .friction import STRICT
-from .lanes import choose, component, held, hold, lane, spread, with_lane
+from .contact_values import Before, BeforeInSpace, Compliance, ComplianceInSpace
+from .lanes import Array, Number, Numbers, Pair, Runs, choose, component, held, hold, lane, spread, with_lane
 from .law_columns import STATIC
-from .modes import OPTIONS, PASTED
+from .parts import Contacts, Sizes
 from .solves import carried_by, solve_one_run, strayed
 from .vectors import LANES, VECTOR
 
@@ -35,81 +34,88 @@ STRAIGHT = 1e-6
 SINGULAR = 1e-12
 
 
-@numba.njit(**OPTIONS)
-def is_second(codes, i):
+@inlined
+def is_second(codes: Array, i: int) -> bool:
     """Return whether pair `i` is the second of a contact in space."""
     return i < codes.size and codes[i] == at.SECOND_TANGENT
 
 
-@numba.njit(**OPTIONS)
-def whole_compliance(faces, i, run, zero):
+@inlined
+def whole_compliance(faces: Array, i: int, runs: Runs) -> ComplianceInSpace:
     """Return the compliance of a contact in space, rows of normal and tangents, for forces ``(N, -T1, -T2)``."""
     n, t, b = 2 * i, 2 * i + 1, 2 * i + 3
-    return (
-        component(faces, n, COMPLIANCE + n, run, zero),
-        component(faces, n, COMPLIANCE + t, run, zero),
-        component(faces, n, COMPLIANCE + b, run, zero),
-        component(faces, t, COMPLIANCE + n, run, zero),
-        component(faces, t, COMPLIANCE + t, run, zero),
-        component(faces, t, COMPLIANCE + b, run, zero),
-        component(faces, b, COMPLIANCE + n, run, zero),
-        component(faces, b, COMPLIANCE + t, run, zero),
-        component(faces, b, COMPLIANCE + b, run, zero),
+    return ComplianceInSpace(
+        component(faces, n, COMPLIANCE + n, runs),
+        component(faces, n, COMPLIANCE + t, runs),
+        component(faces, n, COMPLIANCE + b, runs),
+        component(faces, t, COMPLIANCE + n, runs),
+        component(faces, t, COMPLIANCE + t, runs),
+        component(faces, t, COMPLIANCE + b, runs),
+        component(faces, b, COMPLIANCE + n, runs),
+        component(faces, b, COMPLIANCE + t, runs),
+        component(faces, b, COMPLIANCE + b, runs),
     )
 
 
-@numba.njit(**OPTIONS)
-def softened(w, give):
+@inlined
+def softened(w: ComplianceInSpace, give: Number) -> ComplianceInSpace:
     """Return a compliance in space with an additional one of the normal."""
-    return (w[0] + give, w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8])
+    return ComplianceInSpace(w.nn + give, w.na, w.nb, w.an, w.aa, w.ab, w.bn, w.ba, w.bb)
 
 
-@numba.njit(**OPTIONS)
-def along(w, c, s):
+@inlined
+def along(w: ComplianceInSpace, c: Number, s: Number) -> Compliance:
     """Return the compliance (nn, nt, tn, tt) of a contact in space along the direction (c, s) of its tangent plane."""
-    return (
-        w[0],
-        c * w[1] + s * w[2],
-        c * w[3] + s * w[6],
-        c * (c * w[4] + s * w[5]) + s * (c * w[7] + s * w[8]),
+    return Compliance(
+        w.nn,
+        c * w.na + s * w.nb,
+        c * w.an + s * w.bn,
+        c * (c * w.aa + s * w.ab) + s * (c * w.ba + s * w.bb),
     )
 
 
-@numba.njit(**STRICT)
-def sticking_direction(gap, first, second, w):
+@strict
+def sticking_direction(gap: Number, first: Number, second: Number, w: ComplianceInSpace) -> Numbers:
     """Return the force that would hold a contact against its free displacements (5b): its direction, and its size.
 
     The size is relative to the normal force, infinite where that would pull.
     """
-    a, b = w[4] - w[3] * w[1] / w[0], w[5] - w[3] * w[2] / w[0]
-    c, d = w[7] - w[6] * w[1] / w[0], w[8] - w[6] * w[2] / w[0]
-    first, second = first - w[3] * gap / w[0], second - w[6] * gap / w[0]
+    a, b = w.aa - w.an * w.na / w.nn, w.ab - w.an * w.nb / w.nn
+    c, d = w.ba - w.bn * w.na / w.nn, w.bb - w.bn * w.nb / w.nn
+    first, second = first - w.an * gap / w.nn, second - w.bn * gap / w.nn
     determinant = a * d - b * c
     if abs(determinant) > SINGULAR * (a + d) * (a + d):
         first, second = (d * first - b * second) / determinant, (a * second - c * first) / determinant
-    size, pressed = math.hypot(first, second), w[1] * first + w[2] * second - gap
+    size, pressed = math.hypot(first, second), w.na * first + w.nb * second - gap
     if size == 0.0:
         return 1.0, 0.0, 0.0
-    return first / size, second / size, size * w[0] / pressed if pressed > 0.0 else math.inf
+    return first / size, second / size, size * w.nn / pressed if pressed > 0.0 else math.inf
 
 
-@numba.njit(**STRICT)
-def sliding_direction(gap, slips, w, mu, carried_on, guess):
+@strict
+def sliding_direction(
+    gap: Number,
+    slips: Pair,
+    w: ComplianceInSpace,
+    mu: Number,
+    carried_on: Pair,
+    guess: Pair,
+) -> tuple[Number, Number, bool]:
     """Return the direction of friction under a ratio `mu`, by Newton's method, and whether it converged."""
     c, s = guess
     for _ in range(NEWTON):
-        free = w[0] - mu * (c * w[1] + s * w[2])
+        free = w.nn - mu * (c * w.na + s * w.nb)
         if not free > 0.0:
             return c, s, False
         normal = -gap / free
-        turning = normal * mu * (c * w[2] - s * w[1]) / free
+        turning = normal * mu * (c * w.nb - s * w.na) / free
         pulled, more = mu * normal, mu * turning
-        first, second = c * w[4] + s * w[5], c * w[7] + s * w[8]
-        moved = 9.0 * (slips[0] + w[3] * normal - first * pulled) + carried_on[0]
-        swerved = 9.0 * (slips[1] + w[6] * normal - second * pulled) + carried_on[1]
+        first, second = c * w.aa + s * w.ab, c * w.ba + s * w.bb
+        moved = 9.0 * (slips[0] + w.an * normal - first * pulled) + carried_on[0]
+        swerved = 9.0 * (slips[1] + w.bn * normal - second * pulled) + carried_on[1]
         across = c * swerved - s * moved
-        moving = 9.0 * (w[3] * turning - first * more - (c * w[5] - s * w[4]) * pulled)
-        swerving = 9.0 * (w[6] * turning - second * more - (c * w[8] - s * w[7]) * pulled)
+        moving = 9.0 * (w.an * turning - first * more - (c * w.ab - s * w.aa) * pulled)
+        swerving = 9.0 * (w.bn * turning - second * more - (c * w.bb - s * w.ba) * pulled)
         slope = c * swerving - s * moving - (c * moved + s * swerved)
         if not slope < 0.0:
             return c, s, False
@@ -125,8 +131,17 @@ def sliding_direction(gap, slips, w, mu, carried_on, guess):
     return c, s, False
 
 
-@numba.njit(**STRICT)
-def solve_along(c, s, free, laws, number, before, let_go, step):
+@strict
+def solve_along(
+    c: Number,
+    s: Number,
+    free: tuple[Any, ...],
+    laws: Array,
+    number: int,
+    before: BeforeInSpace,
+    let_go: Number,
+    step: Number,
+) -> Numbers:
     """Solve a contact in space as one of the plane along a direction; `free` are gap, slips, strays and compliance."""
     gap, slips, strays, w = free
     was, last, earlier, state, last_normal, last_forces, _, pasts = before
@@ -140,7 +155,7 @@ def solve_along(c, s, free, laws, number, before, let_go, step):
         at.COULOMB,
         laws,
         number,
-        (
+        Before(
             was,
             c * last[0] + s * last[1],
             c * earlier[0] + s * earlier[1],
@@ -154,30 +169,30 @@ def solve_along(c, s, free, laws, number, before, let_go, step):
     )
 
 
-@numba.njit(**STRICT)
-def carried_on_by(before, let_go, first, second):
+@strict
+def carried_on_by(before: BeforeInSpace, let_go: Number, first: Number, second: Number) -> Pair:
     """Return the share of the last two slips in the velocity along which friction acts, in units of a ninth of a slip.
 
     Contacts that come to rest together may have no consistent forces with this share; after some sweeps friction
     therefore acts along the slip alone. The same holds where a contact begins to slide against its last slips: it was
     at rest, without a direction.
     """
-    moved, swerved = 6.0 * before[1][0] + before[2][0], 6.0 * before[1][1] + before[2][1]
-    begins = before[0] < SLIDING - 0.5 and first * moved + second * swerved <= 0.0
+    moved, swerved = 6.0 * before.slip[0] + before.earlier_slip[0], 6.0 * before.slip[1] + before.earlier_slip[1]
+    begins = before.status < SLIDING - 0.5 and first * moved + second * swerved <= 0.0
     if let_go > 0.0 or begins:
         return 0.0, 0.0
     return moved, swerved
 
 
-@numba.njit(**STRICT)
-def slip_under(c, s, normal, tangential, slips, w):
+@strict
+def slip_under(c: Number, s: Number, normal: Number, tangential: Number, slips: Pair, w: ComplianceInSpace) -> Pair:
     """Return the slip along both tangents under a normal force and one along a direction."""
-    first = slips[0] + w[3] * normal - (c * w[4] + s * w[5]) * tangential
-    return first, slips[1] + w[6] * normal - (c * w[7] + s * w[8]) * tangential
+    first = slips[0] + w.an * normal - (c * w.aa + s * w.ab) * tangential
+    return first, slips[1] + w.bn * normal - (c * w.ba + s * w.bb) * tangential
 
 
-@numba.njit(**STRICT)
-def turns_on_its_line(free, mu, size, came):
+@strict
+def turns_on_its_line(free: tuple[Any, ...], mu: Number, size: Number, came: Pair) -> bool:
     """Return whether friction along the last slip reverses it with only rounding across.
 
     The velocity then passes zero, near which no direction has velocity across it.
@@ -195,8 +210,19 @@ def turns_on_its_line(free, mu, size, came):
     return farther < 0.0 and abs(across) <= STRAIGHT * (size - farther)
 
 
-@numba.njit(**STRICT)
-def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go, step):
+@strict
+def solve_one_in_space(
+    gap: Number,
+    slips: Pair,
+    strays: Pair,
+    w: ComplianceInSpace,
+    law: int,
+    laws: Array,
+    number: int,
+    before: BeforeInSpace,
+    let_go: Number,
+    step: Number,
+) -> Numbers:
     """Return normal force, both tangential forces, status and whether it jams.
 
     Arguments are those of `contact.solve_contact`, with a number for each tangent; `before` are status, slips of the
@@ -208,7 +234,7 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
     if law != at.COULOMB:
         return slide_on_its_way(gap, slips, strays, w, law, laws, number, before, let_go > 0.5, step)
     first, second, held = sticking_direction(gap, slips[0] + strays[0], slips[1] + strays[1], w)
-    mu, was, last, guess = laws[number, STATIC], before[0], before[1], before[6]
+    mu, was, last, guess = laws[number, STATIC], before.status, before.slip, before.guess
     may_hold = held <= mu or mu == 0.0
     if not may_hold:
         strength = math.hypot(guess[0], guess[1])
@@ -216,7 +242,7 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
         carried_on = carried_on_by(before, let_go, first, second)
         c, s, found = sliding_direction(gap, slips, w, mu, carried_on, near)
         if found:
-            normal = -gap / (w[0] - mu * (c * w[1] + s * w[2]))
+            normal = -gap / (w.nn - mu * (c * w.na + s * w.nb))
             slip, swerve = slip_under(c, s, normal, mu * normal, slips, w)
             # A reversal within the step (5d) is solved as a contact along a line only.
             turns = let_go == 0.0 and c * last[0] + s * last[1] < 0.0
@@ -243,8 +269,18 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
     return normal, tangential * c, tangential * s, status, jammed
 
 
-@numba.njit(**STRICT)
-def searched(first, second, may_hold, free, laws, number, before, let_go, step):
+@strict
+def searched(
+    first: Number,
+    second: Number,
+    may_hold: bool,
+    free: tuple[Any, ...],
+    laws: Array,
+    number: int,
+    before: BeforeInSpace,
+    let_go: Number,
+    step: Number,
+) -> Numbers:
     """Return the direction of friction, by the secant method within a bracket, and the contact along it.
 
     A contact that may be held, and is held along the first direction, sticks.
@@ -288,50 +324,72 @@ def searched(first, second, may_hold, free, laws, number, before, let_go, step):
     return c, s, normal, tangential, status, jammed
 
 
-def solve_in_space(gap, slips, strays, w, law, laws, run, before, let_go, step):
+def solve_in_space(
+    gap: Number,
+    slips: Pair,
+    strays: Pair,
+    w: ComplianceInSpace,
+    law: int,
+    laws: Array,
+    number: int,
+    before: BeforeInSpace,
+    let_go: Number,
+    step: Number,
+) -> Numbers:
     """Do `solve_one_in_space` for numbers of runs."""
-    return solve_one_in_space(gap, slips, strays, w, law, laws, run, before, let_go, step)
+    return solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go, step)
 
 
-@numba.njit(**STRICT)
-def lane_of_pair(pair, i):
+@strict
+def lane_of_pair(pair: Pair, i: int) -> Pair:
     """Return the numbers in a lane of two vectors."""
     return lane(pair[0], i), lane(pair[1], i)
 
 
-@numba.njit(**STRICT)
-def lanes_of_compliance(w, i):
+@strict
+def lanes_of_compliance(w: ComplianceInSpace, i: int) -> ComplianceInSpace:
     """Return the numbers in a lane of a compliance."""
-    return (
-        lane(w[0], i),
-        lane(w[1], i),
-        lane(w[2], i),
-        lane(w[3], i),
-        lane(w[4], i),
-        lane(w[5], i),
-        lane(w[6], i),
-        lane(w[7], i),
-        lane(w[8], i),
+    return ComplianceInSpace(
+        lane(w.nn, i),
+        lane(w.na, i),
+        lane(w.nb, i),
+        lane(w.an, i),
+        lane(w.aa, i),
+        lane(w.ab, i),
+        lane(w.bn, i),
+        lane(w.ba, i),
+        lane(w.bb, i),
     )
 
 
-@numba.njit(**STRICT)
-def lanes_of_past(before, i):
+@strict
+def lanes_of_past(before: BeforeInSpace, i: int) -> BeforeInSpace:
     """Return the numbers in a lane of the past of a contact."""
-    return (
-        lane(before[0], i),
-        lane_of_pair(before[1], i),
-        lane_of_pair(before[2], i),
-        lane_of_pair(before[3], i),
-        lane(before[4], i),
-        lane_of_pair(before[5], i),
-        lane_of_pair(before[6], i),
-        lane_of_pair(before[7], i),
+    return BeforeInSpace(
+        lane(before.status, i),
+        lane_of_pair(before.slip, i),
+        lane_of_pair(before.earlier_slip, i),
+        lane_of_pair(before.state, i),
+        lane(before.normal, i),
+        lane_of_pair(before.tangential, i),
+        lane_of_pair(before.guess, i),
+        lane_of_pair(before.past, i),
     )
 
 
-@numba.njit(**STRICT)
-def solve_runs_in_space(gap, slips, strays, w, law, laws, run, before, let_go, step):
+@strict
+def solve_runs_in_space(
+    gap: Number,
+    slips: Pair,
+    strays: Pair,
+    w: ComplianceInSpace,
+    law: int,
+    laws: Array,
+    number: int,
+    before: BeforeInSpace,
+    let_go: Number,
+    step: Number,
+) -> Numbers:
     """Do `solve_one_in_space` for vectors of runs."""
     normal, first, second, new, jammed = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     for i in range(LANES):
@@ -342,7 +400,7 @@ def solve_runs_in_space(gap, slips, strays, w, law, laws, run, before, let_go, s
             lanes_of_compliance(w, i),
             law,
             laws,
-            run + i,
+            number + i,
             lanes_of_past(before, i),
             lane(let_go, i),
             step,
@@ -352,74 +410,102 @@ def solve_runs_in_space(gap, slips, strays, w, law, laws, run, before, let_go, s
     return normal, first, second, new, jammed
 
 
-@overload(solve_in_space)
-def _overload_solve_in_space(gap, slips, strays, w, law, laws, run, before, let_go, step):
+@overloaded(solve_in_space)
+def _overload_solve_in_space(
+    gap: Any, slips: Any, strays: Any, w: Any, law: Any, laws: Any, number: Any, before: Any, let_go: Any, step: Any
+) -> Any:
     chosen = solve_runs_in_space if gap is VECTOR else solve_one_in_space
 
-    def implementation(gap, slips, strays, w, law, laws, run, before, let_go, step):
-        return chosen(gap, slips, strays, w, law, laws, run, before, let_go, step)
+    def implementation(
+        gap: Any, slips: Any, strays: Any, w: Any, law: Any, laws: Any, number: Any, before: Any, let_go: Any, step: Any
+    ) -> Any:
+        return chosen(gap, slips, strays, w, law, laws, number, before, let_go, step)
 
     return implementation
 
 
-@numba.njit(**OPTIONS)
-def carried_in_space(carried, i, run, zero):
+@inlined
+def carried_in_space(carried: Array, i: int, runs: Runs) -> BeforeInSpace:
     """Return what a contact in space carries, along both tangents; see `carried_by`.
 
     Only bristles have a state along the second tangent.
     """
-    first, second = carried_by(carried, i, run, zero), carried_by(carried, i + 1, run, zero)
-    states = first[3], second[3]
-    slips = (first[1], second[1]), (first[2], second[2])
-    return first[0], *slips, states, first[4], (first[5], second[5]), (first[6], second[6])
+    first, second = carried_by(carried, i, runs), carried_by(carried, i + 1, runs)
+    forces = first.tangential, second.tangential
+    return BeforeInSpace(
+        first.status,
+        (first.slip, second.slip),
+        (first.earlier_slip, second.earlier_slip),
+        (first.state, second.state),
+        first.normal,
+        forces,
+        forces,
+        (first.past, second.past),
+    )
 
 
-@numba.njit(**PASTED)
-def free_of_own(contacts, carried, i, run, runs, zero):
+@pasted
+def with_guess(before: BeforeInSpace, guess: Pair) -> BeforeInSpace:
+    """Return what a contact carries with other forces as the guess."""
+    return BeforeInSpace(
+        before.status,
+        before.slip,
+        before.earlier_slip,
+        before.state,
+        before.normal,
+        before.tangential,
+        guess,
+        before.past,
+    )
+
+
+@pasted
+def free_of_own(contacts: Contacts, carried: Array, i: int, runs: Runs) -> tuple[tuple[Any, ...], Array]:
     """Return the arguments of `solve_in_space` for a contact, without its own forces, and the laws."""
     faces, now = contacts.faces, contacts.now
-    w = whole_compliance(faces, i, run, zero)
+    w = whole_compliance(faces, i, runs)
     here = i * at.IN_STEP
-    normal = held(now, here + at.NORMAL_NOW, run, zero)
-    first = held(now, here + at.TANGENTIAL_NOW, run, zero)
-    second = held(now, here + at.IN_STEP + at.TANGENTIAL_NOW, run, zero)
-    gap = component(faces, 2 * i, DISPLACEMENT, run, zero) - (w[0] * normal - w[1] * first - w[2] * second)
-    slip = component(faces, 2 * i + 1, DISPLACEMENT, run, zero) - (w[3] * normal - w[4] * first - w[5] * second)
-    swerve = component(faces, 2 * i + 3, DISPLACEMENT, run, zero) - (w[6] * normal - w[7] * first - w[8] * second)
-    strays = strayed(carried, i, run, zero), strayed(carried, i + 1, run, zero)
-    was, last, earlier, states, last_normal, last_forces, pasts = carried_in_space(carried, i, run, zero)
-    before = (was, last, earlier, states, last_normal, last_forces, (first, second), pasts)
-    return (gap, (slip, swerve), strays, w, contacts.codes[i], i * runs + run, before), contacts.laws
+    normal = held(now, here + at.NORMAL_NOW, runs)
+    first = held(now, here + at.TANGENTIAL_NOW, runs)
+    second = held(now, here + at.IN_STEP + at.TANGENTIAL_NOW, runs)
+    gap = component(faces, 2 * i, DISPLACEMENT, runs) - (w.nn * normal - w.na * first - w.nb * second)
+    slip = component(faces, 2 * i + 1, DISPLACEMENT, runs) - (w.an * normal - w.aa * first - w.ab * second)
+    swerve = component(faces, 2 * i + 3, DISPLACEMENT, runs) - (w.bn * normal - w.ba * first - w.bb * second)
+    strays = strayed(carried, i, runs), strayed(carried, i + 1, runs)
+    before = with_guess(carried_in_space(carried, i, runs), (first, second))
+    return (gap, (slip, swerve), strays, w, contacts.codes[i], i * runs.columns + runs.first, before), contacts.laws
 
 
-@numba.njit(**OPTIONS)
-def put_second(contacts, i, run, goes_on, normal, second, status, zero):
+@inlined
+def put_second(
+    contacts: Contacts, i: int, runs: Runs, goes_on: bool, normal: Number, second: Number, status: Number
+) -> Number:
     """Set the force along the second tangent of contact `i`; return its change."""
     now, here = contacts.now, (i + 1) * at.IN_STEP
-    was = held(now, here + at.TANGENTIAL_NOW, run, zero)
+    was = held(now, here + at.TANGENTIAL_NOW, runs)
     second = choose(goes_on, second, was)
-    hold(now, here + at.TANGENTIAL_NOW, run, second)
+    hold(now, here + at.TANGENTIAL_NOW, runs, second)
     # The pair without a normal repeats force and status of its contact, so that it is carried and shared likewise.
-    hold(now, here + at.NORMAL_NOW, run, normal)
-    hold(now, here + at.STATUS_NOW, run, status)
+    hold(now, here + at.NORMAL_NOW, runs, normal)
+    hold(now, here + at.STATUS_NOW, runs, status)
     return second - was
 
 
-def direction(force, last):
+def direction(force: Pair, last: Pair) -> Pair:
     """Return the direction of a force along both tangents, that of the last force where there is none."""
     return direction_of_one(force, last)
 
 
-@numba.njit(**STRICT)
-def direction_of_one(force, last):
+@strict
+def direction_of_one(force: Pair, last: Pair) -> Pair:
     """Do `direction` for one run."""
     first, second = force if force[0] != 0.0 or force[1] != 0.0 else last
     size = math.hypot(first, second)
     return (first / size, second / size) if size > 0.0 else (1.0, 0.0)
 
 
-@numba.njit(**STRICT)
-def direction_of_runs(force, last):
+@strict
+def direction_of_runs(force: Pair, last: Pair) -> Pair:
     """Do `direction` for vectors of runs."""
     first, second = spread(0.0), spread(0.0)
     for i in range(LANES):
@@ -428,53 +514,77 @@ def direction_of_runs(force, last):
     return first, second
 
 
-@overload(direction)
-def _overload_direction(force, last):
+@overloaded(direction)
+def _overload_direction(force: Any, last: Any) -> Any:
     chosen = direction_of_runs if force[0] is VECTOR else direction_of_one
 
-    def implementation(force, last):
+    def implementation(force: Any, last: Any) -> Any:
         return chosen(force, last)
 
     return implementation
 
 
-@numba.njit(**OPTIONS)
-def pair_of(array, row, further, run, zero):
+@inlined
+def pair_of(array: Array, row: int, further: int, runs: Runs) -> Pair:
     """Return the numbers of a contact in space along both tangents."""
-    return held(array, row, run, zero), held(array, row + further, run, zero)
+    return held(array, row, runs), held(array, row + further, runs)
 
 
-@numba.njit(**OPTIONS)
-def on(pair, c, s):
+@inlined
+def on(pair: Pair, c: Number, s: Number) -> Number:
     """Return the component of a pair along the direction (c, s)."""
     return c * pair[0] + s * pair[1]
 
 
-@numba.njit(**OPTIONS)
-def free_in_space(contacts, sizes, run, zero):
+@inlined
+def free_in_space(contacts: Contacts, sizes: Sizes, runs: Runs) -> None:
     """Set the displacements without the own forces of each contact in space, in place of those for one tangent."""
     now, faces = contacts.now, contacts.faces
     for i in range(sizes.contacts):
         if is_second(contacts.codes, i + 1):
             here = i * at.IN_STEP
-            w = whole_compliance(faces, i, run, zero)
-            normal = held(now, here + at.NORMAL_NOW, run, zero)
-            first, second = pair_of(now, here + at.TANGENTIAL_NOW, at.IN_STEP, run, zero)
-            gap, slip = held(now, here + at.NEW_GAP, run, zero), held(now, here + at.NEW_SLIP, run, zero)
-            swerve = held(now, here + at.IN_STEP + at.NEW_SLIP, run, zero)
-            hold(now, here + at.FREE_GAP, run, gap - w[0] * normal + w[1] * first + w[2] * second)
-            hold(now, here + at.FREE_SLIP, run, slip - w[3] * normal + w[4] * first + w[5] * second)
-            swerve = swerve - w[6] * normal + w[7] * first + w[8] * second
-            hold(now, here + at.IN_STEP + at.FREE_SLIP, run, swerve)
+            w = whole_compliance(faces, i, runs)
+            normal = held(now, here + at.NORMAL_NOW, runs)
+            first, second = pair_of(now, here + at.TANGENTIAL_NOW, at.IN_STEP, runs)
+            gap, slip = held(now, here + at.NEW_GAP, runs), held(now, here + at.NEW_SLIP, runs)
+            swerve = held(now, here + at.IN_STEP + at.NEW_SLIP, runs)
+            hold(now, here + at.FREE_GAP, runs, gap - w.nn * normal + w.na * first + w.nb * second)
+            hold(now, here + at.FREE_SLIP, runs, slip - w.an * normal + w.aa * first + w.ab * second)
+            swerve = swerve - w.bn * normal + w.ba * first + w.bb * second
+            hold(now, here + at.IN_STEP + at.FREE_SLIP, runs, swerve)
 
 
-def next_in_space(touch, gap, slips, strays, w, law, laws, run, before, let_go, step):
+def next_in_space(
+    touch: Pair,
+    gap: Number,
+    slips: Pair,
+    strays: Pair,
+    w: ComplianceInSpace,
+    law: int,
+    laws: Array,
+    number: int,
+    before: BeforeInSpace,
+    let_go: Number,
+    step: Number,
+) -> tuple[Pair, Pair, Number]:
     """Return past parts of the ratios, internal states and share of stick: `contact_in_space.next_on_way_of_run`."""
-    return next_on_way_of_run(touch, gap, slips, strays, w, law, laws, run, before, let_go, step)
+    return next_on_way_of_run(touch, gap, slips, strays, w, law, laws, number, before, let_go, step)
 
 
-@numba.njit(**STRICT)
-def next_of_runs_in_space(touch, gap, slips, strays, w, law, laws, run, before, let_go, step):
+@strict
+def next_of_runs_in_space(
+    touch: Pair,
+    gap: Number,
+    slips: Pair,
+    strays: Pair,
+    w: ComplianceInSpace,
+    law: int,
+    laws: Array,
+    number: int,
+    before: BeforeInSpace,
+    let_go: Number,
+    step: Number,
+) -> tuple[Any, ...]:
     """Do `next_in_space` for vectors of runs."""
     past, other_past, state, other_state, stuck = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     for i in range(LANES):
@@ -486,7 +596,7 @@ def next_of_runs_in_space(touch, gap, slips, strays, w, law, laws, run, before, 
             lanes_of_compliance(w, i),
             law,
             laws,
-            run + i,
+            number + i,
             lanes_of_past(before, i),
             lane(let_go, i),
             step,
@@ -497,11 +607,35 @@ def next_of_runs_in_space(touch, gap, slips, strays, w, law, laws, run, before, 
     return (past, other_past), (state, other_state), stuck
 
 
-@overload(next_in_space)
-def _overload_next_in_space(touch, gap, slips, strays, w, law, laws, run, before, let_go, step):
+@overloaded(next_in_space)
+def _overload_next_in_space(
+    touch: Any,
+    gap: Any,
+    slips: Any,
+    strays: Any,
+    w: Any,
+    law: Any,
+    laws: Any,
+    number: Any,
+    before: Any,
+    let_go: Any,
+    step: Any,
+) -> Any:
     chosen = next_of_runs_in_space if slips[0] is VECTOR else next_on_way_of_run
 
-    def implementation(touch, gap, slips, strays, w, law, laws, run, before, let_go, step):
-        return chosen(touch, gap, slips, strays, w, law, laws, run, before, let_go, step)
+    def implementation(
+        touch: Any,
+        gap: Any,
+        slips: Any,
+        strays: Any,
+        w: Any,
+        law: Any,
+        laws: Any,
+        number: Any,
+        before: Any,
+        let_go: Any,
+        step: Any,
+    ) -> Any:
+        return chosen(touch, gap, slips, strays, w, law, laws, number, before, let_go, step)
 
     return implementation

@@ -5,18 +5,18 @@ with those of a second angle. Their order: multiples of the first angle, then mu
 """
 
 import math
+from typing import Any
 
 import numba
-from numba.extending import overload
 
 from .block_rows import ACROSS, ALONG, FIRST, FROM_ZERO, NUMBER
-from .lanes import fused, lane, load, spread, store, whole
-from .modes import OPTIONS
+from .compiled import INLINED, inlined, overloaded
+from .lanes import Array, Number, Pair, Runs, fused, lane, load, spread, store, whole
 from .vectors import LANES, VECTOR
 
 
-@numba.njit(**(OPTIONS | {"fastmath": {"contract", "nsz"}}))
-def sine_and_cosine(theta):
+@numba.njit(**(INLINED | {"fastmath": {"contract", "nsz"}}))
+def sine_and_cosine(theta: float) -> Pair:
     """Return sin and cos of an angle from 0 to pi, to two units in the last place.
 
     From the sine and cosine of half the angle off pi/2, which is at most pi/4, by the polynomials of FreeBSD's msun.
@@ -32,8 +32,8 @@ def sine_and_cosine(theta):
     return 1.0 - 2.0 * s * s, -2.0 * s * c
 
 
-@numba.njit(**OPTIONS)
-def sine_and_cosine_of_half_turns(half_turns):
+@inlined
+def sine_and_cosine_of_half_turns(half_turns: Number) -> Pair:
     """Return sin and cos of any number of half turns."""
     passed = whole(half_turns)
     s, c = sine_and_cosine((half_turns - passed) * math.pi)
@@ -41,57 +41,59 @@ def sine_and_cosine_of_half_turns(half_turns):
     return s * sign, c * sign
 
 
-def set_multiples(theta, from_zero, count, waves, first, sine, run):
+def set_multiples(theta: float, from_zero: int, count: int, waves: Array, first: int, sine: int, runs: Runs) -> None:
     """Set sin(k theta) and cos(k theta), for k from 1 or from 0 on, in `count` blocks of rows of `waves`."""
     s, c = sine_and_cosine(theta)
     if from_zero:
-        store(waves, first, sine, run, spread(0.0))
-        store(waves, first, sine + 1, run, spread(1.0))
+        store(waves, first, sine, runs, spread(0.0))
+        store(waves, first, sine + 1, runs, spread(1.0))
         first, count = first + 1, count - 1
     if count == 0:
         return
-    store(waves, first, sine, run, s)
-    store(waves, first, sine + 1, run, c)
+    store(waves, first, sine, runs, s)
+    store(waves, first, sine + 1, runs, c)
     filled = 1
     while filled < count:
         for k in range(min(filled, count - filled)):
             known, new = first + k, first + filled + k
-            a, b = load(waves, known, sine, run), load(waves, known, sine + 1, run)
-            store(waves, new, sine, run, fused(s, b, c * a))
-            store(waves, new, sine + 1, run, fused(c, b, -s * a))
+            a, b = load(waves, known, sine, runs), load(waves, known, sine + 1, runs)
+            store(waves, new, sine, runs, fused(s, b, c * a))
+            store(waves, new, sine + 1, runs, fused(c, b, -s * a))
         s, c = 2.0 * s * c, 1.0 - 2.0 * s * s
         filled *= 2
 
 
-@numba.njit(**OPTIONS)
-def set_eight_at_a_time(theta, from_zero, count, waves, first, sine, run):
+@inlined
+def set_eight_at_a_time(
+    theta: float, from_zero: int, count: int, waves: Array, first: int, sine: int, runs: Runs
+) -> None:
     """Do `set_multiples` for one run, with eight multiples in a block: the first directly, the others by rotation."""
-    s, c = sine_and_cosine_of_half_turns(load(waves, first, NUMBER, run) * (theta / math.pi))
-    store(waves, first, sine, run, s)
-    store(waves, first, sine + 1, run, c)
+    s, c = sine_and_cosine_of_half_turns(load(waves, first, NUMBER, runs) * (theta / math.pi))
+    store(waves, first, sine, runs, s)
+    store(waves, first, sine + 1, runs, c)
     turn_s, turn_c = lane(s, LANES - 1), lane(c, LANES - 1)
     if from_zero:
         one_s, one_c = lane(s, 1), lane(c, 1)
         turn_s, turn_c = turn_s * one_c + turn_c * one_s, turn_c * one_c - turn_s * one_s
     for k in range(1, count):
         s, c = fused(s, turn_c, c * turn_s), fused(c, turn_c, -turn_s * s)
-        store(waves, first + k, sine, run, s)
-        store(waves, first + k, sine + 1, run, c)
+        store(waves, first + k, sine, runs, s)
+        store(waves, first + k, sine + 1, runs, c)
 
 
-@overload(set_multiples)
-def _set_multiples(theta, from_zero, count, waves, first, sine, run):
+@overloaded(set_multiples)
+def _set_multiples(theta: Any, from_zero: Any, count: Any, waves: Any, first: Any, sine: Any, runs: Any) -> Any:
     if theta is VECTOR:
         return set_multiples
-    return lambda theta, from_zero, count, waves, first, sine, run: set_eight_at_a_time(
-        theta, from_zero, count, waves, first, sine, run
+    return lambda theta, from_zero, count, waves, first, sine, runs: set_eight_at_a_time(
+        theta, from_zero, count, waves, first, sine, runs
     )
 
 
-@numba.njit(**OPTIONS)
-def set_waves(waves, sets, i, along, across, sine, run):
+@inlined
+def set_waves(waves: Array, sets: Array, i: int, along: float, across: float, sine: int, runs: Runs) -> None:
     """Set the waves of the path of contact `i` in rows from `sine` on, from the two angles at the contact."""
     first, count, cross = sets[i, FIRST], sets[i, ALONG], sets[i, ACROSS]
-    set_multiples(along, sets[i, FROM_ZERO], count, waves, first, sine, run)
+    set_multiples(along, sets[i, FROM_ZERO], count, waves, first, sine, runs)
     if cross:
-        set_multiples(across, 1, cross, waves, first + count, sine, run)
+        set_multiples(across, 1, cross, waves, first + count, sine, runs)

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from .._kernels import layout as at
+from .._kernels.contact_values import Before, Compliance
 from .._kernels.contacts import solve_closed
+from .._kernels.lanes import Runs
 from .._kernels.law_columns import STATIC
 from .._kernels.parts import Contacts, Sizes, Timing
 from .._kernels.slipping import STICKING
@@ -63,7 +65,7 @@ def forces_of(
     )
     timing, touching = Timing(1, step, solve.tolerance, solve.sweeps), 1.0
     carried = columns(side_by_side([carried.ravel()]))
-    solve_closed(space or None, contacts, carried, touching, sizes, timing, 0, 1, 0.0)
+    solve_closed(space or None, contacts, carried, touching, sizes, timing, Runs(0, 1, 0.0))
     now = contacts.now.reshape(count, at.IN_STEP)
     return np.asarray(now[:, [at.NORMAL_NOW, at.TANGENTIAL_NOW]])
 
@@ -75,6 +77,6 @@ def _force_of_one(
     away = carried[at.MATERIAL] - carried[at.ANCHOR] if carried[at.STATUS] == STICKING else 0.0
     slips, forces = (at.LAST_SLIP, at.EARLIER_SLIP), (at.LAST_NORMAL, at.LAST_TANGENTIAL)
     before = (at.STATUS, *slips, at.FRICTION_STATE, *forces, at.PAST_RATIO)
-    was, w = tuple(float(carried[one]) for one in before), tuple(map(float, compliance.ravel()))
+    was, w = Before(*(float(carried[one]) for one in before)), Compliance(*map(float, compliance.ravel()))
     normal, tangential, _, _ = solve_one_run(gap, slip, float(away), w, int(laws[0][0]), laws[1], 0, was, 0.0, step)
     return np.array([[normal, tangential]])

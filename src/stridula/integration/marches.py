@@ -42,6 +42,7 @@ from ..records.state import State
 from .compiled_code import forget_other_sources, store_one_at_a_time
 from .contact_solve import GaussSeidel
 
+_compiled: Any = march
 if not PLAIN:
     forget_other_sources(march)
     store_one_at_a_time()
@@ -249,7 +250,7 @@ class March:
     def is_compiled(self) -> bool:
         """Whether nothing has to be compiled, or loaded, for a march of this kind."""
         types = tuple(map(numba.typeof, (*self.kind, self.places[0])))
-        return PLAIN or types in [signature[:4] for signature in march.signatures]
+        return PLAIN or types in [signature[:4] for signature in _compiled.signatures]
 
     @property
     def states(self) -> list[State]:
@@ -320,7 +321,7 @@ class March:
 
 def compilations() -> int:
     """Return the number of kinds of the march that this process has compiled."""
-    return 0 if PLAIN else sum(march.stats.cache_misses.values())
+    return 0 if PLAIN else sum(_compiled.stats.cache_misses.values())
 
 
 def _beside(imposed: Sequence[Array]) -> Array:

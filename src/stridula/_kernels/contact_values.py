@@ -1,0 +1,113 @@
+"""Values that belong to a contact within a step, by name."""
+
+from typing import NamedTuple
+
+from .lanes import Number, Pair
+
+
+class Compliance(NamedTuple):
+    """Relative displacement of a contact for unit forces [m/N], the first letter that of the displacement."""
+
+    nn: Number
+    nt: Number
+    tn: Number
+    tt: Number
+
+
+class ComplianceInSpace(NamedTuple):
+    """The same along the normal and two tangents a and b."""
+
+    nn: Number
+    na: Number
+    nb: Number
+    an: Number
+    aa: Number
+    ab: Number
+    bn: Number
+    ba: Number
+    bb: Number
+
+
+class Before(NamedTuple):
+    """What a contact carries from the steps before.
+
+    Attributes
+    ----------
+    status : number
+        Status of the last step.
+    slip, earlier_slip : number
+        Slip of the last step, and of the one before [m].
+    state : number
+        Internal state of the law.
+    normal, tangential : number
+        Forces of the last step [N].
+    past : number
+        Part of the ratio of forces that lies before the step, see `slipping`.
+    """
+
+    status: Number
+    slip: Number
+    earlier_slip: Number
+    state: Number
+    normal: Number
+    tangential: Number
+    past: Number
+
+
+class BeforeInSpace(NamedTuple):
+    """The same along both tangents, and `guess`, the tangential forces from which their direction is sought."""
+
+    status: Number
+    slip: Pair
+    earlier_slip: Pair
+    state: Pair
+    normal: Number
+    tangential: Pair
+    guess: Pair
+    past: Pair
+
+
+class Yielding(NamedTuple):
+    """How a contact yields along its normal; a rigid one has no stiffness.
+
+    Attributes
+    ----------
+    stiffness, exponent : number
+        Force for an indentation of one, and the power of the indentation.
+    damping, rate : number
+        Dashpot [N s/m], and damping rate over the force [s/m].
+    reach : number
+        Size of its sawtooth under unit forces [m/N], see `pressing`.
+    """
+
+    stiffness: Number
+    exponent: Number
+    damping: Number
+    rate: Number
+    reach: Number
+
+
+class Indentations(NamedTuple):
+    """Indentations of a contact at the last three steps [m], the latest first."""
+
+    now: Number
+    before: Number
+    earlier: Number
+
+
+class Touch(NamedTuple):
+    """Forces of a contact in a step [N], its status, and whether it jams."""
+
+    normal: Number
+    tangential: Number
+    status: Number
+    jammed: Number
+
+
+class Moved(NamedTuple):
+    """Gap and slip of a contact without its own forces, then with them [m]."""
+
+    free_gap: Number
+    free_slip: Number
+    gap: Number
+    slip: Number
