@@ -299,6 +299,7 @@ def test_harness_rejects_a_penalty_contact():
 def test_harness_rejects_friction_with_the_wrong_sign():
     """Negative control: the solve of one contact in plain Python with reversed friction replaces the kernel's."""
     from stridula._kernels import contact as kernel
+    from stridula._kernels.contact_values import Before, Compliance
 
     law, step = st.Coulomb(0.4), 1e-4
     numbers = np.array([[0.4] + [0.0] * (LAW_COLUMNS - 1)])
@@ -311,9 +312,9 @@ def test_harness_rejects_friction_with_the_wrong_sign():
         )
         run = st.simulate(system, 200 * step, scheme=SCHEMES[0], step=step, sample_rate=1 / step, probes=[])
         slip, columns = step * 1.0, []
-        compliance = (step**2, 0.0, 0.0, step**2)
+        compliance = Compliance(step**2, 0.0, 0.0, step**2)
         for _ in range(200):
-            before = (2.0, slip, slip, 0.0, 10.0, 4.0)
+            before = Before(2.0, slip, slip, 0.0, 10.0, 4.0, 0.0)
             normal, tangential, status, _ = kernel.solve_contact.py_func(
                 -10.0 * step**2, slip, 0.0, compliance, 0, numbers, 0, before, False, step
             )
