@@ -11,7 +11,7 @@ from .lanes import Array, Number, Numbers, Runs, anywhere, choose, held, hold, m
 from .parts import Carried, Contacts, Imposed, Timing
 from .pressing import stored_in
 from .solves import anchor_after, carried_by, next_on_way, resting, strayed
-from .yielding import path_of, yields_of
+from .yielding import path_of, softened, yields_of
 
 
 @inlined
@@ -215,7 +215,7 @@ def keep_books(
         held(contacts.now, i * at.IN_STEP + at.BEYOND, runs),
     )
     stuck = runs.zero
-    w = Compliance(w.nn + give, w.nt, w.tn, w.tt)
+    w = softened(w, give)
     moved = Moved(moved.free_gap + beyond, moved.free_slip, moved.gap, moved.slip)
     if not set_valued(law) or anywhere(touch.status + before.status > 0.5):
         away = strayed(carried, i, runs)

@@ -34,9 +34,8 @@ from .space import (
     next_in_space,
     on,
     pair_of,
-    softened,
+    softened_in_space,
     whole_compliance,
-    with_guess,
 )
 from .trying import complete_many, place_after, soften, try_many
 from .yielding import comes_close
@@ -104,7 +103,7 @@ def keep_books_in_space(
     forces = pair_of(now, here + at.TANGENTIAL_NOW, at.IN_STEP, runs)
     slips = pair_of(now, here + at.NEW_SLIP, at.IN_STEP, runs)
     free = pair_of(now, here + at.FREE_SLIP, at.IN_STEP, runs)
-    carried_on = carried_in_space(carried, i, runs)
+    carried_on = carried_in_space(carried, i, forces, runs)
     c, s = direction(forces, carried_on.tangential)
     before = Before(
         carried_on.status,
@@ -128,7 +127,7 @@ def keep_books_in_space(
         )
         touch = Touch(normal, on(forces, c, s), status, held(now, here + at.JAMMED_NOW, runs))
         whole = whole_compliance(contacts.faces, i, runs)
-        w = along(softened(whole, give), c, s)
+        w = along(softened_in_space(whole, give), c, s)
         strays = strayed(carried, i, runs), strayed(carried, i + 1, runs)
         at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, runs)
         away = on(strays, c, s)
@@ -146,11 +145,11 @@ def keep_books_in_space(
             moved.free_gap,
             free,
             strays,
-            softened(whole, give),
+            softened_in_space(whole, give),
             law,
             contacts.laws,
             i * runs.columns + runs.first,
-            with_guess(carried_on, forces),
+            carried_on,
             held(now, here + at.LET_GO, runs),
             timing.step,
         )

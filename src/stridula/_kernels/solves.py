@@ -244,13 +244,9 @@ def _overload_solve(
     gap: Any, slip: Any, strayed: Any, w: Any, law: Any, laws: Any, number: Any, before: Any, let_go: Any, step: Any
 ) -> Any:
     chosen = solve_runs if gap is VECTOR else solve_one_run
-
-    def implementation(
-        gap: Any, slip: Any, strayed: Any, w: Any, law: Any, laws: Any, number: Any, before: Any, let_go: Any, step: Any
-    ) -> Any:
-        return chosen(gap, slip, strayed, w, law, laws, number, before, let_go, step)
-
-    return implementation
+    return lambda gap, slip, strayed, w, law, laws, number, before, let_go, step: chosen(
+        gap, slip, strayed, w, law, laws, number, before, let_go, step
+    )
 
 
 @overloaded(next_on_way)
@@ -268,23 +264,9 @@ def _overload_next_on_way(
     step: Any,
 ) -> Any:
     chosen = next_on_way_of_runs if slip is VECTOR else next_on_way_of_run
-
-    def implementation(
-        touch: Any,
-        gap: Any,
-        slip: Any,
-        strayed: Any,
-        w: Any,
-        law: Any,
-        laws: Any,
-        number: Any,
-        before: Any,
-        let_go: Any,
-        step: Any,
-    ) -> Any:
-        return chosen(touch, gap, slip, strayed, w, law, laws, number, before, let_go, step)
-
-    return implementation
+    return lambda touch, gap, slip, strayed, w, law, laws, number, before, let_go, step: chosen(
+        touch, gap, slip, strayed, w, law, laws, number, before, let_go, step
+    )
 
 
 @inlined

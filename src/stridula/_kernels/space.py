@@ -58,7 +58,7 @@ def whole_compliance(faces: Array, i: int, runs: Runs) -> ComplianceInSpace:
 
 
 @inlined
-def softened(w: ComplianceInSpace, give: Number) -> ComplianceInSpace:
+def softened_in_space(w: ComplianceInSpace, give: Number) -> ComplianceInSpace:
     """Return a compliance in space with an additional one of the normal."""
     return ComplianceInSpace(w.nn + give, w.na, w.nb, w.an, w.aa, w.ab, w.bn, w.ba, w.bb)
 
@@ -415,47 +415,27 @@ def _overload_solve_in_space(
     gap: Any, slips: Any, strays: Any, w: Any, law: Any, laws: Any, number: Any, before: Any, let_go: Any, step: Any
 ) -> Any:
     chosen = solve_runs_in_space if gap is VECTOR else solve_one_in_space
-
-    def implementation(
-        gap: Any, slips: Any, strays: Any, w: Any, law: Any, laws: Any, number: Any, before: Any, let_go: Any, step: Any
-    ) -> Any:
-        return chosen(gap, slips, strays, w, law, laws, number, before, let_go, step)
-
-    return implementation
+    return lambda gap, slips, strays, w, law, laws, number, before, let_go, step: chosen(
+        gap, slips, strays, w, law, laws, number, before, let_go, step
+    )
 
 
 @inlined
-def carried_in_space(carried: Array, i: int, runs: Runs) -> BeforeInSpace:
+def carried_in_space(carried: Array, i: int, guess: Pair, runs: Runs) -> BeforeInSpace:
     """Return what a contact in space carries, along both tangents; see `carried_by`.
 
     Only bristles have a state along the second tangent.
     """
     first, second = carried_by(carried, i, runs), carried_by(carried, i + 1, runs)
-    forces = first.tangential, second.tangential
     return BeforeInSpace(
         first.status,
         (first.slip, second.slip),
         (first.earlier_slip, second.earlier_slip),
         (first.state, second.state),
         first.normal,
-        forces,
-        forces,
-        (first.past, second.past),
-    )
-
-
-@pasted
-def with_guess(before: BeforeInSpace, guess: Pair) -> BeforeInSpace:
-    """Return what a contact carries with other forces as the guess."""
-    return BeforeInSpace(
-        before.status,
-        before.slip,
-        before.earlier_slip,
-        before.state,
-        before.normal,
-        before.tangential,
+        (first.tangential, second.tangential),
         guess,
-        before.past,
+        (first.past, second.past),
     )
 
 
@@ -472,7 +452,7 @@ def free_of_own(contacts: Contacts, carried: Array, i: int, runs: Runs) -> tuple
     slip = component(faces, 2 * i + 1, DISPLACEMENT, runs) - (w.an * normal - w.aa * first - w.ab * second)
     swerve = component(faces, 2 * i + 3, DISPLACEMENT, runs) - (w.bn * normal - w.ba * first - w.bb * second)
     strays = strayed(carried, i, runs), strayed(carried, i + 1, runs)
-    before = with_guess(carried_in_space(carried, i, runs), (first, second))
+    before = carried_in_space(carried, i, (first, second), runs)
     return (gap, (slip, swerve), strays, w, contacts.codes[i], i * runs.columns + runs.first, before), contacts.laws
 
 
@@ -517,11 +497,7 @@ def direction_of_runs(force: Pair, last: Pair) -> Pair:
 @overloaded(direction)
 def _overload_direction(force: Any, last: Any) -> Any:
     chosen = direction_of_runs if force[0] is VECTOR else direction_of_one
-
-    def implementation(force: Any, last: Any) -> Any:
-        return chosen(force, last)
-
-    return implementation
+    return lambda force, last: chosen(force, last)
 
 
 @inlined
@@ -622,20 +598,6 @@ def _overload_next_in_space(
     step: Any,
 ) -> Any:
     chosen = next_of_runs_in_space if slips[0] is VECTOR else next_on_way_of_run
-
-    def implementation(
-        touch: Any,
-        gap: Any,
-        slips: Any,
-        strays: Any,
-        w: Any,
-        law: Any,
-        laws: Any,
-        number: Any,
-        before: Any,
-        let_go: Any,
-        step: Any,
-    ) -> Any:
-        return chosen(touch, gap, slips, strays, w, law, laws, number, before, let_go, step)
-
-    return implementation
+    return lambda touch, gap, slips, strays, w, law, laws, number, before, let_go, step: chosen(
+        touch, gap, slips, strays, w, law, laws, number, before, let_go, step
+    )

@@ -4,11 +4,11 @@ from typing import Any
 
 from . import layout as at
 from .compiled import called, inlined, pasted
-from .contact_values import Before, BeforeInSpace, Compliance, ComplianceInSpace, Indentations, Yielding
+from .contact_values import Before, BeforeInSpace, Compliance, Indentations, Yielding
 from .lanes import Array, Number, Numbers, Pair, Runs, anywhere, choose, everywhere, held, magnitude
 from .pressing import press, share_of
 from .solves import forces_of_one
-from .space import solve_in_space
+from .space import softened_in_space, solve_in_space
 
 # Smallest slope of the force, times the compliance of the bodies: where the force falls or is flat, Newton's method
 # takes this slope, which only costs it a few more steps.
@@ -48,6 +48,12 @@ def comes_close(i: int, gap: Number, constants: Array, carried: Array, runs: Run
     now, before, _ = path_of(i, carried, runs)
     was = choose(soft, choose(now > before, now, before), runs.zero)
     return choose(gap < 0.0, 1.0, choose(was > 0.0, 1.0, runs.zero))
+
+
+@inlined
+def softened(w: Compliance, give: Number) -> Compliance:
+    """Return a compliance with an additional one of the normal."""
+    return Compliance(w.nn + give, w.nt, w.tn, w.tt)
 
 
 @inlined
@@ -128,7 +134,7 @@ def forces_yielding(
             gap + further,
             slip,
             away,
-            Compliance(w.nn + softer, w.nt, w.tn, w.tt),
+            softened(w, softer),
             law,
             laws,
             number,
@@ -189,8 +195,9 @@ def forces_yielding_in_space(
     share = share_of(-gap, path, yields)
     softer, further = give_of(-gap, path, yields, share, w.nn, step, zero)
     for _ in range(STEPS):
-        softened = ComplianceInSpace(w.nn + softer, w.na, w.nb, w.an, w.aa, w.ab, w.bn, w.ba, w.bb)
-        one = solve_in_space(gap + further, slips, strays, softened, law, laws, number, before, let_go, step)
+        one = solve_in_space(
+            gap + further, slips, strays, softened_in_space(w, softer), law, laws, number, before, let_go, step
+        )
         goes_on = done < 0.5
         normal, first, second = (
             choose(goes_on, one[0], normal),
