@@ -21,6 +21,7 @@ ARGUMENTS = (
     "--disable-component-update",
 )
 STALL = "GPU stall due to ReadPixels"
+RESTS = 500  # A part comes sooner than this [ms].
 PLAYS = "window.stridula && stridula.stats.samples > 4800"
 
 
@@ -92,6 +93,14 @@ def plays_on(page: Any, samples: int = 4800) -> None:
     """Wait until a number of further samples were played."""
     before = stats(page, "samples")
     until(page, f"stridula.stats.samples >= {before + samples}")
+
+
+def pause(page: Any) -> None:
+    """Pause, and wait until the parts that were on their way have come."""
+    page.locator("#play").click()
+    before = -1
+    while before != (before := stats(page, "samples")):
+        page.wait_for_timeout(RESTS)
 
 
 def shown(page: Any, key: str) -> float:

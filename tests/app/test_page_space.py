@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from .browsing import Browsing, launched, until
+from .browsing import Browsing, launched, pause, until
 from .test_page_access import grave
 
 SOFTWARE = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
@@ -53,7 +53,7 @@ def test_a_system_in_space_is_drawn_with_its_contacts(browsing):
     assert page.locator("#beams").is_hidden()
     assert page.locator("#space-missing").is_hidden()
     assert page.locator("#space-high").text_content().endswith("m/s")
-    page.locator("#play").click()
+    pause(page)
     picture = seen(page)
     assert len(np.unique((255 * picture).astype(int).reshape(-1, 3), axis=0)) > 200
     # The lit disc is visible: much of it is as light as the panel, so its shaded sides are tested.
@@ -66,7 +66,7 @@ def test_a_system_in_space_is_drawn_with_its_contacts(browsing):
 
 def test_the_view_turns_by_keys_and_mouse(browsing):
     page = opened(browsing)
-    page.locator("#play").click()
+    pause(page)
     canvas = page.locator("#space")
     first = seen(page)
     assert np.array_equal(seen(page), first)
@@ -107,7 +107,7 @@ TURNED = """async ([azimuth, others]) => {
 
 def test_the_view_stays_while_values_of_the_same_bodies_change(browsing):
     page = opened(browsing)
-    page.locator("#play").click()
+    pause(page)
     before, after = page.evaluate(TURNED, [0.3, False])
     assert after == before
     (_, _, shapes), home = page.evaluate(TURNED, [0.3, True])
