@@ -52,8 +52,8 @@ class RationalWeakening(StaticAndKinetic):
     def __str__(self) -> str:
         return f"rational, {self.static:.4g} to {self.kinetic:.4g} over {self.velocity:.3g} m/s"
 '''
-RATIO = """    if law == at.RATIONAL_WEAKENING:
-        return laws[i, KINETIC] + (laws[i, STATIC] - laws[i, KINETIC]) / (1.0 + speed / laws[i, VELOCITY])
+RATIO = """    if law.code == at.RATIONAL_WEAKENING:
+        return table[row, KINETIC] + (table[row, STATIC] - table[row, KINETIC]) / (1.0 + speed / table[row, VELOCITY])
 """
 # The steps of the recipe: file, text there, text in its place.
 STEPS = (
@@ -64,11 +64,11 @@ STEPS = (
         '    "SLIP": _RATE_AND_STATE,\n    "RATIONAL_WEAKENING": _WEAKENING,\n',
     ),
     ("_kernels/law_columns.py", '_STICKS = {"COULOMB", ', '_STICKS = {"COULOMB", "RATIONAL_WEAKENING", '),
-    ("_kernels/friction.py", "    if law == at.STRIBECK:\n", RATIO + "    if law == at.STRIBECK:\n"),
+    ("_kernels/friction.py", "    if law.code == at.STRIBECK:\n", RATIO + "    if law.code == at.STRIBECK:\n"),
     (
         "_kernels/friction.py",
-        "law == at.STRIBECK or law == at.LUGRE",
-        "law in (at.STRIBECK, at.LUGRE, at.RATIONAL_WEAKENING)",
+        "law.code == at.STRIBECK or law.code == at.LUGRE",
+        "law.code in (at.STRIBECK, at.LUGRE, at.RATIONAL_WEAKENING)",
     ),
     (
         "contact/laws.py",

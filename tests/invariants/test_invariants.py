@@ -299,10 +299,10 @@ def test_harness_rejects_a_penalty_contact():
 def test_harness_rejects_friction_with_the_wrong_sign():
     """Negative control: the solve of one contact in plain Python with reversed friction replaces the kernel's."""
     from stridula._kernels import contact as kernel
-    from stridula._kernels.contact_values import Before, Compliance
+    from stridula._kernels.contact_values import Before, Compliance, Free, Law
 
     law, step = st.Coulomb(0.4), 1e-4
-    numbers = np.array([[0.4] + [0.0] * (LAW_COLUMNS - 1)])
+    marched = Law(layout.COULOMB, np.array([[0.4] + [0.0] * (LAW_COLUMNS - 1)]), 0, 0.4)
 
     def record(sense):
         """A mass of 1 kg sliding at 1 m/s under 10 N, marched here with the kernel's solve."""
@@ -315,9 +315,8 @@ def test_harness_rejects_friction_with_the_wrong_sign():
         compliance = Compliance(step**2, 0.0, 0.0, step**2)
         for _ in range(200):
             before = Before(2.0, slip, slip, 0.0, 10.0, 4.0, 0.0)
-            normal, tangential, status, _ = kernel.solve_contact.py_func(
-                -10.0 * step**2, slip, 0.0, compliance, 0, numbers, 0, before, False, step
-            )
+            free = Free(-10.0 * step**2, slip, 0.0, compliance, 0.0)
+            normal, tangential, status, _ = kernel.solve_contact.py_func(free, marched, before, step)
             tangential *= sense
             slip -= tangential * step**2
             columns.append((normal, tangential, status, slip / step))

@@ -10,7 +10,7 @@ from hypothesis import strategies as some
 from kernels.twin import contact_states
 from stridula._kernels import layout, solves
 from stridula._kernels.contact import solve_contact
-from stridula._kernels.contact_values import Before, Compliance
+from stridula._kernels.contact_values import Before, Compliance, Free, Law
 from stridula._kernels.law_columns import LAW_COLUMNS
 
 SEPARATED, STICKING, SLIDING = 0, 1, 2
@@ -38,7 +38,8 @@ def coulomb(gap, slip, w, mu, last_slip=0.0):
     """The kernel's solve under Coulomb's law, of a contact that slid by `last_slip` in the step before."""
     laws = np.array([[mu] + [0.0] * (LAW_COLUMNS - 1)])
     before = Before(float(SLIDING if last_slip else SEPARATED), last_slip, last_slip, 0.0, 0.0, 0.0, 0.0)
-    return solve_contact(gap, slip, 0.0, Compliance(*w.ravel()), layout.COULOMB, laws, 0, before, False, 1.0)
+    free, law = Free(gap, slip, 0.0, Compliance(*w.ravel()), 0.0), Law(layout.COULOMB, laws, 0, mu)
+    return solve_contact(free, law, before, 1.0)
 
 
 def solve(gap, slip, w, mu, last_slip=0.0):
@@ -164,12 +165,12 @@ def test_the_solve_without_branches_is_the_same(gap, slip, turn, flat, mu, last_
     w = compliance(turn, flat)
     assume(clear_of_borders(gap, slip, w, mu) and clear_of_borders(gap, slip - last_slip, w, mu))
     normal, tangential, status, jammed = coulomb(gap, slip, w, mu, last_slip)
-    rows = tuple(w.ravel())
+    rows = Compliance(*w.ravel())
     other = solves.coulomb(float(gap), float(slip), rows, float(mu))
-    turned = solves.turned_round(float(gap), float(slip), float(last_slip), rows, float(mu), *other[:3])
+    turned = solves.turned_round(float(gap), float(slip), float(last_slip), rows, float(mu), other)
     assert turned[2] == status
-    if turned == other[:3]:
-        assert other[3] == jammed
+    if turned == other:
+        assert other.jammed == jammed
     scale = abs(normal) + abs(tangential)
     np.testing.assert_allclose(turned[:2], (normal, tangential), rtol=1e-6, atol=1e-12 * scale)
 

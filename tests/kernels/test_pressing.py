@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 from stridula._kernels.contact_values import Indentations, Yielding
-from stridula._kernels.pressing import between, press_on_path, press_one, quotient, share_of_quotient
+from stridula._kernels.pressing import between, press, press_on_path, quotient, share_of
 
 STEP = 1e-5
 DRAWS = 150
@@ -84,9 +84,9 @@ def test_the_slope_is_that_of_the_force(seed, share):
     yields, change = Yielding(*numbers, 0.0), 1e-11
 
     def force(at: float) -> float:
-        return press_one(at, Indentations(now, before, earlier), yields, share, STEP)[0]
+        return press(at, Indentations(now, before, earlier), yields, share, STEP)[0]
 
-    _, slope = press_one(x, Indentations(now, before, earlier), yields, share, STEP)
+    _, slope = press(x, Indentations(now, before, earlier), yields, share, STEP)
     around = (force(x + change) - force(x - change)) / (2.0 * change)
     scale = numbers[0] * numbers[1] * max(x, now, before, 1e-9) ** (numbers[1] - 1.0) + numbers[2] / STEP
     assert slope == pytest.approx(around, rel=5e-3, abs=5e-3 * scale)
@@ -100,7 +100,7 @@ def test_the_damping_is_corrected_by_the_third_difference(seed):
     path = (*(one + 2e-6 * rng.random() for one in path), 1e-6 * rng.normal() + 1e-6)
     braked = numbers[2] + numbers[3] * numbers[0] * max(path[1], 0.0) ** numbers[1]
     reach = float(rng.choice([0.0, 0.1, 0.4, 1.0])) * STEP / max(braked, 1e-30)
-    found, _ = press_one(path[0], Indentations(*path[1:]), Yielding(*numbers, reach), 0.0, STEP)
+    found, _ = press(path[0], Indentations(*path[1:]), Yielding(*numbers, reach), 0.0, STEP)
     largest = numbers[0] * max(*path[:3], 0.0) ** numbers[1]
     assert found == pytest.approx(with_damping_corrected(path, numbers, reach), rel=2e-3, abs=3e-4 * largest)
 
@@ -111,7 +111,7 @@ def test_the_force_is_continuous_where_damping_begins_to_pull():
     for now, before, earlier in ((1.0, 1.4, 1.9), (0.3, 1.0, 1.4), (1.0, 1.2, 0.2)):
         path = Indentations(deep * now, deep * before, deep * earlier)
         x = np.linspace(-2.0 * deep, 4.0 * deep, 20001)
-        forces = np.array([press_one(float(at), path, yields, 0.0, STEP)[0] for at in x])
+        forces = np.array([press(float(at), path, yields, 0.0, STEP)[0] for at in x])
         steepest = yields[0] + 1.5 * yields[2] / STEP
         assert np.abs(np.diff(forces)).max() < steepest * (x[1] - x[0])
 
@@ -131,7 +131,7 @@ def test_the_force_of_a_cubic_motion_is_its_mean_to_fourth_order(numbers):
         known = quad(lambda s, h=step: (1.0 - abs(s)) * force(s * h), -1.0, 1.0, points=[0.0], epsrel=1e-12)[0]
         x, now, before, earlier = (float(motion(n * step)) for n in (1, 0, -1, -2))
         yields = Yielding(*numbers, 0.0)
-        errors.append(abs(press_one(x, Indentations(now, before, earlier), yields, 0.0, step)[0] - known))
+        errors.append(abs(press(x, Indentations(now, before, earlier), yields, 0.0, step)[0] - known))
         without.append(abs(press_on_path(x, now, before, yields, step)[0] - known))
     assert without[0] == pytest.approx(4.0 * without[1], rel=0.1)
     assert errors[0] < without[0] / 20.0
@@ -144,11 +144,11 @@ def largest_root(angle: float, share: float, reach: float) -> float:
     Mass and step are one, `angle` is the advance of its vibration in a step, `share` that of the critical damping.
     """
     yields = Yielding(angle**2, 1.0, 2.0 * share * angle, 0.0, reach)
-    of_quotient = share_of_quotient(1.0, 1.0, 1.0, yields)
+    of_quotient = share_of(1.0, Indentations(1.0, 1.0, 1.0), yields)
     deep, change = np.ones(4), 1e-7
 
     def force(path) -> float:
-        return press_one(float(path[0]), Indentations(*map(float, path[1:])), yields, of_quotient, 1.0)[0]
+        return press(float(path[0]), Indentations(*map(float, path[1:])), yields, of_quotient, 1.0)[0]
 
     slopes = [(force(deep + change * one) - force(deep - change * one)) / (2.0 * change) for one in np.eye(4)]
     return float(np.abs(np.roots(np.array([1.0, -2.0, 1.0, 0.0]) + slopes)).max())

@@ -14,8 +14,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import stridula as st
-from stridula._kernels import bookkeeping, contact, contacts, direct, faces, friction, solves
-from stridula._kernels.contact_values import Before, Compliance
+from stridula._kernels import bookkeeping, contact, contacts, direct, faces, friction, layout, solves
+from stridula._kernels.contact_values import Before, Compliance, Free, Law
 from stridula.verification.prony import exponents
 from stridula.verification.systems import mode_coupling
 from stridula.verification.systems.on_belts import Slider, den_hartog, swing
@@ -100,11 +100,12 @@ def test_reversals_are_of_second_order(frequency, friction, scheme):
 
 def test_the_previous_slip_decides_on_a_reversal():
     """Negative control: the same push on a contact that was open has friction of one sense for the whole step."""
-    w, numbers = Compliance(1e-4, 0.0, 0.0, 1e-4), np.array([[0.3] + [0.0] * 7])
+    free = Free(-1e-3, -1e-3, 0.0, Compliance(1e-4, 0.0, 0.0, 1e-4), 0.0)
+    law = Law(layout.COULOMB, np.array([[0.3] + [0.0] * 7]), 0, 0.3)
     forces = []
     for status in (SLIDING, SEPARATED):
         before = Before(float(status), 2e-3, 2e-3, 0.0, 0.0, 0.0, 0.0)
-        forces.append(contact.solve_contact.py_func(-1e-3, -1e-3, 0.0, w, 0, numbers, 0, before, False, 1e-2)[1])
+        forces.append(contact.solve_contact.py_func(free, law, before, 1e-2).tangential)
     assert forces[1] == pytest.approx(-3.0)
     assert abs(forces[0]) < 2.9
 

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 import stridula as st
 from stridula._kernels import layout as at
 from stridula._kernels.contact_values import Indentations, Yielding
-from stridula._kernels.pressing import press_one, share_of_quotient
+from stridula._kernels.pressing import press, share_of
 from stridula.contact.stiffness import force_at
 from stridula.lowering import assemble
 from stridula.lowering.blocks import blocks_of
@@ -293,12 +293,12 @@ def test_several_contacts_obey_their_laws_at_every_step(scheme):
         path = list(zip(indented[3:], indented[2:-1], indented[1:-2], indented[:-3], strict=True))
         yields = Yielding(*contact.yields.numbers, reach[2 * k])
         known = [
-            press_one(x, past, yields, share_of_quotient(x, *past[:2], yields), step)[0]
+            press(x, past, yields, share_of(x, past, yields), step)[0]
             for x, past in ((one[0], Indentations(*one[1:])) for one in path)
         ]
         # The share of the quotient depends on the indentation without force, which a record does not have.
         wary = yields._replace(reach=4.0 * yields.reach)
-        resolved = [share_of_quotient(*one[:3], wary) == 0.0 for one in path]
+        resolved = [share_of(one[0], Indentations(*one[1:]), wary) == 0.0 for one in path]
         pressed = np.array(resolved) & (normal[3:, k] > 0.0)
         np.testing.assert_allclose(normal[3:, k][pressed], np.array(known)[pressed], rtol=1e-6, atol=1e-9 * size)
         seen += int(pressed.sum())

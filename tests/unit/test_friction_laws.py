@@ -12,6 +12,7 @@ import pytest
 import stridula as st
 from stridula._kernels import friction
 from stridula._kernels import layout as at
+from stridula._kernels.contact_values import Law
 from stridula._kernels.law_columns import CODES, LAW_COLUMNS, NEW_STATE, PARAMETERS
 from stridula.contact import LAWS
 from stridula.scenarios.schema import json_schema
@@ -146,9 +147,9 @@ def test_declared_properties_of_laws_agree_with_the_march(law):
 
 @pytest.mark.parametrize("law", [law for law in every_law() if law.has_state], ids=str)
 def test_a_state_in_steady_sliding_stays(law):
-    code, numbers = getattr(at, law.kernel_code), np.array([[*law.parameters().values()]])
+    marched = Law(getattr(at, law.kernel_code), np.array([[*law.parameters().values()]]), 0, 0.0)
     state = law.state_in_sliding(-0.02)
-    assert friction.next_state(code, numbers, 0, state, -0.02, 1e-4) == pytest.approx(state, rel=1e-12)
+    assert friction.next_state(marched, state, -0.02, 1e-4) == pytest.approx(state, rel=1e-12)
 
 
 def test_the_schema_has_what_a_law_declares():

@@ -5,12 +5,12 @@ from typing import Any
 from . import layout as at
 from .compiled import inlined
 from .contact import SLIDING, STICKING, closed_share, landed_share, stuck_share
-from .contact_values import Before, Compliance, Moved, Touch
+from .contact_values import Before, Compliance, Free, Moved, Touch
 from .friction import set_valued
 from .lanes import Array, Number, Numbers, Runs, anywhere, choose, held, hold, magnitude, read
 from .parts import Carried, Contacts, Imposed, Timing
 from .pressing import stored_in
-from .solves import anchor_after, carried_by, next_on_way, resting, strayed
+from .solves import anchor_after, carried_by, law_of, next_on_way, resting, strayed
 from .yielding import path_of, softened, yields_of
 
 
@@ -107,13 +107,11 @@ def next_of(
     runs: Runs,
 ) -> Numbers:
     """Return the past part of the ratio of contact `i` for the next step, the state of its law, its share of stick."""
-    law, laws, number = contacts.codes[i], contacts.laws, i * runs.columns + runs.first
-    if law == at.COULOMB:
+    if contacts.codes[i] == at.COULOMB:
         return runs.zero, before.state, runs.zero
     let_go = held(contacts.now, i * at.IN_STEP + at.LET_GO, runs)
-    return next_on_way(
-        (touch.normal, touch.status), moved.free_gap, moved.free_slip, away, w, law, laws, number, before, let_go, step
-    )
+    free = Free(moved.free_gap, moved.free_slip, away, w, let_go)
+    return next_on_way((touch.normal, touch.status), free, law_of(i, contacts, runs), before, step)
 
 
 @inlined

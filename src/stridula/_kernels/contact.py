@@ -5,9 +5,9 @@ from typing import Any
 
 from . import layout as at
 from .compiled import strict, strict_pasted
-from .contact_values import Before, Compliance
+from .contact_values import Before, Compliance, Free, Law, Touch
 from .friction import set_valued, sliding_ratio, sticking_speed
-from .lanes import Array, Number, Pair, choose, magnitude
+from .lanes import Number, Pair, choose, magnitude
 from .law_columns import STATIC
 from .slipping import SEPARATED, SLIDING, STICKING, ratio_over_step, ratio_with_state
 
@@ -17,109 +17,73 @@ TRIALS, PATIENCE, ROUND_OFF = 80, 25, 1e-15
 
 
 @strict_pasted
-def solve_contact(
-    gap: Number,
-    slip: Number,
-    strayed: Number,
-    w: Compliance,
-    law: int,
-    laws: Array,
-    i: int,
-    before: Before,
-    let_go: bool,
-    step: Number,
-) -> tuple[Number, Number, int, bool]:
-    """Return (normal force, tangential force, status, jammed) that close `gap` under a law of friction (step 5).
+def solve_contact(free: Free, law: Law, before: Before, step: Number) -> Touch:
+    """Return the contact that closes the gap under a law of friction (step 5).
 
-    `gap` is the gap [m] at the end of the step without contact force, `slip` the motion of the tip along the track in
-    the step without it [m], `strayed` the distance of a stick from its anchor [m]. The compliance `w` [m/N], rows (nn,
-    nt, tn, tt), is the relative displacement of the tip against the track for unit forces (on the tip and its opposite
-    on the track), the first index that of the displacement. The tangential force acts on the track along the tangent.
-    `before` are status, slips of the last two steps, the later first, internal state, both forces of the last step, the
-    past part of the ratio, see `slipping`. A contact that was let go is no longer held.
+    The compliance is the relative displacement of the tip against the track for unit forces on the tip and their
+    opposites on the track. The tangential force acts on the track along the tangent.
     """
+    gap, slip, strayed, w = free.gap, free.slip, free.strayed, free.w
     if gap >= 0.0:
-        return 0.0, 0.0, SEPARATED, False
-    if law != at.COULOMB:
-        if set_valued(law) and w.tt == 0.0:
-            return slide_as_prescribed(gap, slip, strayed, w.nn, law, laws, i, before, step)
-        return slide_on_its_way(gap, slip, strayed, w, law, laws, i, before, let_go, step)
-    if w.tt == 0.0:
-        return slide_as_prescribed(gap, slip, strayed, w.nn, law, laws, i, before, step)
-    normal, tangential, status, jammed = solve_coulomb(gap, slip + strayed, w, laws[i, STATIC])
-    last_slip = before.slip
-    if before.status == SLIDING and (status == STICKING or tangential * last_slip < 0.0):
-        turns, pressed, turned, slides = turn_round(gap, slip, last_slip, w, laws[i, STATIC], laws[i, STATIC])
+        return Touch(0.0, 0.0, float(SEPARATED), 0.0)
+    if set_valued(law.code) and w.tt == 0.0:
+        return slide_as_prescribed(free, law, before, step)
+    if law.code != at.COULOMB:
+        return slide_on_its_way(free, law, before, step)
+    mu, last_slip = law.table[law.row, STATIC], before.slip
+    touch = solve_coulomb(gap, slip + strayed, w, mu)
+    if before.status == SLIDING and (touch.status == STICKING or touch.tangential * last_slip < 0.0):
+        turns, pressed, turned, slides = turn_round(gap, slip, last_slip, w, mu, mu)
         if turns:
-            return pressed, turned, SLIDING if slides else STICKING, False
-    return normal, tangential, status, jammed
+            return Touch(pressed, turned, float(SLIDING if slides else STICKING), 0.0)
+    return touch
 
 
 @strict
-def ratio_under(
-    normal: Number,
-    gap: Number,
-    slip: Number,
-    strayed: Number,
-    w: Compliance,
-    law: int,
-    laws: Array,
-    i: int,
-    before: Before,
-    let_go: bool,
-    step: Number,
-) -> tuple[Any, ...]:
+def ratio_under(normal: Number, free: Free, law: Law, before: Before, step: Number) -> tuple[Any, ...]:
     """Return the ratio of forces over a step under a normal force, its past part, new state, status and stuck share.
 
     Under a law with internal state nothing sticks, however slowly it creeps. See `slipping`.
     """
-    if set_valued(law):
-        ratio, past, status, stuck = ratio_over_step(normal, gap, slip, strayed, w, law, laws, i, before, let_go, step)
+    slip, w = free.slip, free.w
+    if set_valued(law.code):
+        ratio, past, status, stuck = ratio_over_step(normal, free, law, before, step)
         return ratio, past, before.state, status, stuck
-    ratio, past, state = ratio_with_state(normal, slip, w, law, laws, i, before, step)
+    ratio, past, state = ratio_with_state(normal, slip, w, law, before, step)
     moved = slip + (w.tn - ratio * w.tt) * normal
-    slow = abs(moved) < step * sticking_speed(law, laws, i)
+    slow = abs(moved) < step * sticking_speed(law)
     return ratio, past, state, STICKING if slow else SLIDING, 0.0
 
 
 @strict
-def slide_on_its_way(
-    gap: Number,
-    slip: Number,
-    strayed: Number,
-    w: Compliance,
-    law: int,
-    laws: Array,
-    i: int,
-    before: Before,
-    let_go: bool,
-    step: Number,
-) -> tuple[Number, Number, int, bool]:
+def slide_on_its_way(free: Free, law: Law, before: Before, step: Number) -> Touch:
     """Return the contact under a law whose friction changes within the step (5c).
 
     The normal force that closes the gap depends on the ratio, and this on the normal force: the secant method.
     """
+    gap, slip, strayed, w = free.gap, free.slip, free.strayed, free.w
     w_nn, w_nt = w.nn, w.nt
-    if set_valued(law) and before.status != SLIDING:
+    if set_valued(law.code) and before.status != SLIDING:
         pressed, needed = sticking_forces(gap, slip + strayed, w)
         sticks = False
         if pressed > 0.0:
-            sticks = ratio_under(pressed, gap, slip, strayed, w, law, laws, i, before, let_go, step)[3] == STICKING
+            sticks = ratio_under(pressed, free, law, before, step)[3] == STICKING
         if sticks:
             sense = 1.0 if needed >= 0.0 else -1.0
-            return pressed, needed, STICKING, w_nn - sense * laws[i, STATIC] * w_nt <= 0.0
+            jams = w_nn - sense * law.table[law.row, STATIC] * w_nt <= 0.0
+            return Touch(pressed, needed, float(STICKING), 1.0 if jams else 0.0)
     ratio = before.tangential / before.normal if before.normal > 0.0 else 0.0
-    free = w_nn - ratio * w_nt
-    normal = -gap / (free if free > 0.0 else w_nn)
+    clear = w_nn - ratio * w_nt
+    normal = -gap / (clear if clear > 0.0 else w_nn)
     status, last, error_before = SLIDING, 0.0, 0.0
     low, high, below, above, settled = 0.0, math.inf, ratio, ratio, False
     for trial in range(TRIALS):
-        ratio, _, _, status, _ = ratio_under(normal, gap, slip, strayed, w, law, laws, i, before, let_go, step)
-        free = w_nn - ratio * w_nt
-        if free <= 0.0:
+        ratio, _, _, status, _ = ratio_under(normal, free, law, before, step)
+        clear = w_nn - ratio * w_nt
+        if clear <= 0.0:
             pressed, needed = sticking_forces(gap, slip + strayed, w)
-            return pressed, needed, STICKING, True
-        found = -gap / free
+            return Touch(pressed, needed, float(STICKING), 1.0)
+        found = -gap / clear
         error = found - normal
         settled = abs(error) <= ROUND_OFF * found or w_nt == 0.0
         if settled:
@@ -143,7 +107,7 @@ def slide_on_its_way(
         # The ratio jumps at this normal force, where the contact stops or slides on: between both it closes the gap.
         share = min(max((w_nn + gap / normal - below * w_nt) / (w_nt * (above - below)), 0.0), 1.0)
         ratio = below + share * (above - below)
-    return normal, ratio * normal, status, False
+    return Touch(normal, ratio * normal, float(status), 0.0)
 
 
 @strict
@@ -155,15 +119,15 @@ def sticking_forces(gap: Number, slip: Number, w: Compliance) -> Pair:
 
 
 @strict
-def solve_coulomb(gap: Number, slip: Number, w: Compliance, mu: Number) -> tuple[Number, Number, int, bool]:
+def solve_coulomb(gap: Number, slip: Number, w: Compliance, mu: Number) -> Touch:
     """Return the contact (5b, 5c) that closes a `gap` below zero under one coefficient of friction."""
     normal, tangential = sticking_forces(gap, slip, w)
     sense = 1.0 if tangential >= 0.0 else -1.0
     free = w.nn - sense * mu * w.nt
     if abs(tangential) <= mu * normal:
-        return normal, tangential, STICKING, free <= 0.0
+        return Touch(normal, tangential, float(STICKING), 1.0 if free <= 0.0 else 0.0)
     normal = -gap / free
-    return normal, sense * mu * normal, SLIDING, False
+    return Touch(normal, sense * mu * normal, float(SLIDING), 0.0)
 
 
 @strict
@@ -204,37 +168,27 @@ def turn_round(
 
 
 @strict
-def slide_as_prescribed(
-    gap: Number,
-    slip: Number,
-    strayed: Number,
-    w_nn: Number,
-    law: int,
-    laws: Array,
-    i: int,
-    before: Before,
-    step: Number,
-) -> tuple[Any, ...]:
+def slide_as_prescribed(free: Free, law: Law, before: Before, step: Number) -> Touch:
     """Return the contact of bodies that no force moves along the tangent: the slip is given."""
-    status, last_slip = before.status, before.slip
-    normal = -gap / w_nn
-    if slip == 0.0 or slip + strayed == 0.0:
-        return normal, 0.0, STICKING, False
-    ratio = sliding_ratio(law, laws, i, abs(velocity_at(slip, before, step)))
-    if status == SLIDING and last_slip * slip < 0.0:
+    slip, last_slip = free.slip, before.slip
+    normal = -free.gap / free.w.nn
+    if slip == 0.0 or slip + free.strayed == 0.0:
+        return Touch(normal, 0.0, float(STICKING), 0.0)
+    ratio = sliding_ratio(law, abs(velocity_at(slip, last_slip, before.earlier_slip, step)))
+    if before.status == SLIDING and last_slip * slip < 0.0:
         # Sliding on until it stops, then back (5d).
         ratio *= (slip + last_slip) / (slip - last_slip)
-    return normal, math.copysign(1.0, slip) * ratio * normal, SLIDING, False
+    return Touch(normal, math.copysign(1.0, slip) * ratio * normal, float(SLIDING), 0.0)
 
 
 @strict_pasted
-def velocity_at(slip: Number, before: tuple[Any, ...], step: Number) -> Number:
+def velocity_at(slip: Number, last: Number, earlier: Number, step: Number) -> Number:
     """Return the slip velocity at the middle of the last step and this one, of second order.
 
     The mean would not see a sawtooth from step to step. Among the second-order combinations of three slips this one
     damps it best: under stiff friction it falls to a third in each step.
     """
-    return (9.0 * slip + 6.0 * before[1] + before[2]) / (16.0 * step)
+    return (9.0 * slip + 6.0 * last + earlier) / (16.0 * step)
 
 
 @strict_pasted

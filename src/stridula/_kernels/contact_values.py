@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from .lanes import Number, Pair
+from .lanes import Array, Number, Pair
 
 
 class Compliance(NamedTuple):
@@ -26,6 +26,61 @@ class ComplianceInSpace(NamedTuple):
     bn: Number
     ba: Number
     bb: Number
+
+
+class Law(NamedTuple):
+    """The law of friction of a contact.
+
+    Attributes
+    ----------
+    code : int
+        Code of the law, see `layout`.
+    table : array
+        Parameters of the laws of all contacts, with the columns of `law_columns`.
+    row : int
+        Row of this contact, that of the first of several runs.
+    at_rest : number
+        Ratio of forces up to which it may rest.
+    """
+
+    code: int
+    table: Array
+    row: int
+    at_rest: Number
+
+
+class Free(NamedTuple):
+    """Motion of a contact in a step without its own forces, and what these change.
+
+    Attributes
+    ----------
+    gap : number
+        Gap at the end of the step [m].
+    slip : number
+        Motion of the tip along the track in the step [m].
+    strayed : number
+        Distance of a stick from its anchor [m].
+    w : Compliance
+        Displacement for unit forces.
+    let_go : number
+        Above 0.5 where the contact is no longer held, and above 0 where no reversal within the step is sought.
+    """
+
+    gap: Number
+    slip: Number
+    strayed: Number
+    w: Compliance
+    let_go: Number
+
+
+class FreeInSpace(NamedTuple):
+    """The same along both tangents."""
+
+    gap: Number
+    slips: Pair
+    strays: Pair
+    w: ComplianceInSpace
+    let_go: Number
 
 
 class Before(NamedTuple):
@@ -100,6 +155,15 @@ class Touch(NamedTuple):
 
     normal: Number
     tangential: Number
+    status: Number
+    jammed: Number
+
+
+class TouchInSpace(NamedTuple):
+    """The same with the forces along both tangents."""
+
+    normal: Number
+    tangential: Pair
     status: Number
     jammed: Number
 

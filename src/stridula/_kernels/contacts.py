@@ -4,19 +4,20 @@ Numbers of contact `i` of a run lie in rows ``i * count + kind``.
 """
 
 import math
+from typing import Any
 
 from . import layout as at
 from .block_rows import COMPLIANCE, DISPLACEMENT
 from .compiled import entry, inlined, pasted
 from .contact import SLIDING, STICKING
-from .contact_values import Compliance
+from .contact_values import Free
 from .direct import solve_states
 from .faces import displace, displace_freely, displace_in_space, own_compliance
 from .lanes import Array, Number, Numbers, Pair, Runs, anywhere, choose, component, everywhere, held, hold, magnitude
 from .parts import Contacts, Sizes, Timing
-from .solves import carried_by, strayed
-from .space import free_of_own, is_second, put_second
-from .yielding import comes_close, forces_of_any, forces_of_any_in_space, path_of, yields_of
+from .solves import carried_by, law_of, strayed
+from .space import carried_in_space, free_of_own, is_second, put_second
+from .yielding import comes_close, path_of, solve_any, yields_of
 
 # Sweeps before the first direct solve for the forces of the states found, and between direct solves.
 FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 1, 8
@@ -68,48 +69,14 @@ def start_from_last(contacts: Contacts, carried: Array, touching: Number, sizes:
 
 
 @pasted
-def forces_of_this(
-    i: int,
-    gap: Number,
-    slip: Number,
-    w: Compliance,
-    contacts: Contacts,
-    carried: Array,
-    let_go: Number,
-    step: Number,
-    runs: Runs,
-) -> Numbers:
-    """Return normal force, tangential force, status and whether it jams, for contact `i` of the plane."""
-    away, at_rest = (
-        strayed(carried, i, runs),
-        held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, runs),
-    )
-    law, number = contacts.codes[i], i * runs.columns + runs.first
-    before = carried_by(carried, i, runs)
+def solve_in_turn(i: int, free: Any, before: Any, contacts: Contacts, carried: Array, step: Number, runs: Runs) -> Any:
+    """Solve contact `i` of the plane or of space, and keep how it yields."""
     yields, path = yields_of(i, contacts.constants, runs), path_of(i, carried, runs)
-    friction = (law, contacts.laws, number, at_rest)
-    normal, tangential, status, jammed, give, beyond = forces_of_any(
-        (gap, slip, away, w), friction, before, let_go, step, yields, path, runs.zero
-    )
+    law = law_of(i, contacts, runs)
+    touch, give, beyond = solve_any(free, law, before, yields, path, step, runs.zero)
     hold(contacts.now, i * at.IN_STEP + at.GIVE, runs, give)
     hold(contacts.now, i * at.IN_STEP + at.BEYOND, runs, beyond)
-    return normal, tangential, status, jammed
-
-
-@pasted
-def forces_of_this_in_space(
-    i: int, contacts: Contacts, carried: Array, let_go: Number, step: Number, runs: Runs
-) -> Numbers:
-    """Return normal force, both tangential forces, status and whether it jams, for contact `i` in space."""
-    free, laws = free_of_own(contacts, carried, i, runs)
-    gap, slips, strays, w, law, number, before = free
-    yields, path = yields_of(i, contacts.constants, runs), path_of(i, carried, runs)
-    normal, first, second, status, jammed, give, beyond = forces_of_any_in_space(
-        (gap, slips, strays, w), (law, laws, number), before, let_go, step, yields, path, runs.zero
-    )
-    hold(contacts.now, i * at.IN_STEP + at.GIVE, runs, give)
-    hold(contacts.now, i * at.IN_STEP + at.BEYOND, runs, beyond)
-    return normal, first, second, status, jammed
+    return touch
 
 
 @pasted
@@ -146,20 +113,26 @@ def sweep_once(
             held(now, here + at.NORMAL_NOW, runs),
             held(now, here + at.TANGENTIAL_NOW, runs),
         )
-        was, let_go = held(now, here + at.STATUS_NOW, runs), held(now, here + at.LET_GO, runs)
+        was = held(now, here + at.STATUS_NOW, runs)
         w = own_compliance(faces, i, runs)
         second, normal, tangential, status, jammed = runs.zero, runs.zero, runs.zero, runs.zero, runs.zero
         in_space = False
         if space is not None:
             in_space = is_second(contacts.codes, i + 1)
             if in_space:
-                normal, tangential, second, status, jammed = forces_of_this_in_space(
-                    i, contacts, carried, let_go, step, runs
-                )
+                guess = was_tangential, held(now, here + at.IN_STEP + at.TANGENTIAL_NOW, runs)
+                before = carried_in_space(carried, i, guess, runs)
+                alone = free_of_own(contacts, carried, i, was_normal, guess, runs)
+                touch = solve_in_turn(i, alone, before, contacts, carried, step, runs)
+                normal, (tangential, second), status, jammed = touch
         if not in_space:
-            gap -= w[0] * was_normal - w[1] * was_tangential
-            slip -= w[2] * was_normal - w[3] * was_tangential
-            normal, tangential, status, jammed = forces_of_this(i, gap, slip, w, contacts, carried, let_go, step, runs)
+            gap -= w.nn * was_normal - w.nt * was_tangential
+            slip -= w.tn * was_normal - w.tt * was_tangential
+            let_go = held(now, here + at.LET_GO, runs)
+            in_plane = Free(gap, slip, strayed(carried, i, runs), w, let_go)
+            normal, tangential, status, jammed = solve_in_turn(
+                i, in_plane, carried_by(carried, i, runs), contacts, carried, step, runs
+            )
         goes_on = done < 0.5
         normal, tangential = choose(goes_on, normal, was_normal), choose(goes_on, tangential, was_tangential)
         status = choose(goes_on, status, was)
@@ -181,9 +154,9 @@ def sweep_once(
             misfit = largest_of(misfit, magnitude(across * swerved))
         change = largest_of(change, largest_of(magnitude(more), magnitude(pulled)))
         largest = largest_of(largest, largest_of(normal, magnitude(tangential)))
-        opened, slipped = magnitude(w[0] * more - w[1] * pulled), magnitude(w[2] * more - w[3] * pulled)
+        opened, slipped = magnitude(w.nn * more - w.nt * pulled), magnitude(w.tn * more - w.tt * pulled)
         misfit = largest_of(misfit, largest_of(opened, slipped))
-        reach = largest_of(reach, w[0] * normal)
+        reach = largest_of(reach, w.nn * normal)
     return change, largest, misfit, reach, settled
 
 

@@ -7,12 +7,11 @@ mean velocity on it is of second order only, and corrected by the third differen
 """
 
 import math
-from typing import Any
 
-from .compiled import overloaded, strict
+from .compiled import strict
 from .contact_values import Indentations, Yielding
-from .lanes import Number, Numbers, Pair, lane, spread, with_lane
-from .vectors import LANES, VECTOR
+from .lanes import Number, Numbers, Pair
+from .lanewise import lanewise
 
 # Change of the indentation, relative to its mean, below which the quotient is computed by its series.
 SMALL = 0.01
@@ -155,10 +154,10 @@ def press_on_path(x: float, now: float, before: float, yields: Yielding, step: f
     return force, slope
 
 
-@strict
-def share_of_quotient(x: float, now: float, before: float, yields: Yielding) -> float:
+@lanewise(0.0)
+def share_of(x: Number, path: Indentations, yields: Yielding) -> Number:
     """Return the share of the force by the quotient of energies, for the indentation `x` without force."""
-    deepest = max(x, now, before)
+    deepest = max(x, path.now, path.before)
     if deepest <= 0.0:
         return 0.0
     steepness = yields.reach * yields.stiffness * yields.exponent * power(deepest, yields.exponent) / deepest
@@ -197,8 +196,8 @@ def press_corrected(x: float, path: Indentations, yields: Yielding, step: float)
     return share * force, share * slope
 
 
-@strict
-def press_one(x: float, path: Indentations, yields: Yielding, share: float, step: float) -> Pair:
+@lanewise((0.0, 0.0))
+def press(x: Number, path: Indentations, yields: Yielding, share: Number, step: float) -> Pair:
     """Return the force of an indentation and its slope.
 
     `path` are the indentations of the last three steps, the latest first, `share` that of the quotient of energies.
@@ -225,86 +224,7 @@ def between(x: float, now: float, exponent: float) -> float:
     return energy / (6.0 * (exponent + 1.0))
 
 
-@strict
-def stored_in_one(x: float, now: float, stiffness: float, exponent: float) -> float:
-    """Do `stored_in` for one run."""
-    return stiffness * between(x, now, exponent) if stiffness > 0.0 else 0.0
-
-
-def share_of(x: float, path: Indentations, yields: Yielding) -> float:
-    """Return the shares of the forces by quotients of energies."""
-    return share_of_quotient(x, path.now, path.before, yields)
-
-
-def press(x: float, path: Indentations, yields: Yielding, share: float, step: float) -> Pair:
-    """Return the forces of indentations and their slopes."""
-    return press_one(x, path, yields, share, step)
-
-
-def stored_in(x: float, now: float, yields: Yielding) -> float:
-    """Return the energies stored in contacts between two steps, given the indentations at both."""
-    return stored_in_one(x, now, yields.stiffness, yields.exponent)
-
-
-@strict
-def lane_of_yields(yields: Yielding, i: int) -> Yielding:
-    """Return stiffness, exponent, damping, damping rate and reach in a lane."""
-    return Yielding(
-        lane(yields.stiffness, i),
-        lane(yields.exponent, i),
-        lane(yields.damping, i),
-        lane(yields.rate, i),
-        lane(yields.reach, i),
-    )
-
-
-@strict
-def share_of_runs(x: Number, path: Indentations, yields: Yielding) -> Number:
-    """Do `share_of` for vectors of runs."""
-    share = spread(0.0)
-    for i in range(LANES):
-        now, before = lane(path.now, i), lane(path.before, i)
-        one = share_of_quotient(lane(x, i), now, before, lane_of_yields(yields, i))
-        share = with_lane(share, i, one)
-    return share
-
-
-@strict
-def press_runs(x: float, path: Indentations, yields: Yielding, share: float, step: float) -> Pair:
-    """Do `press` for vectors of runs."""
-    force, slope = spread(0.0), spread(0.0)
-    for i in range(LANES):
-        own = Indentations(lane(path.now, i), lane(path.before, i), lane(path.earlier, i))
-        one = press_one(lane(x, i), own, lane_of_yields(yields, i), lane(share, i), step)
-        force, slope = with_lane(force, i, one[0]), with_lane(slope, i, one[1])
-    return force, slope
-
-
-@strict
-def stored_in_runs(x: float, now: Number, yields: Yielding) -> Number:
-    """Do `stored_in` for vectors of runs."""
-    energy = spread(0.0)
-    for i in range(LANES):
-        one = stored_in_one(lane(x, i), lane(now, i), lane(yields.stiffness, i), lane(yields.exponent, i))
-        energy = with_lane(energy, i, one)
-    return energy
-
-
-@overloaded(share_of)
-def _share_of(x: Any, path: Any, yields: Any) -> Any:
-    if x is VECTOR:
-        return lambda x, path, yields: share_of_runs(x, path, yields)
-    return lambda x, path, yields: share_of_quotient(x, path[0], path[1], yields)
-
-
-@overloaded(press)
-def _press(x: Any, path: Any, yields: Any, share: Any, step: Any) -> Any:
-    chosen = press_runs if x is VECTOR else press_one
-    return lambda x, path, yields, share, step: chosen(x, path, yields, share, step)
-
-
-@overloaded(stored_in)
-def _stored_in(x: Any, now: Any, yields: Any) -> Any:
-    if x is VECTOR:
-        return lambda x, now, yields: stored_in_runs(x, now, yields)
-    return lambda x, now, yields: stored_in_one(x, now, yields[0], yields[1])
+@lanewise(0.0)
+def stored_in(x: Number, now: Number, yields: Yielding) -> Number:
+    """Return the energy stored in a contact between two steps, given the indentations at both."""
+    return yields.stiffness * between(x, now, yields.exponent) if yields.stiffness > 0.0 else 0.0

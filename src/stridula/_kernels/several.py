@@ -17,28 +17,28 @@ from .bookkeeping import (
 )
 from .circles import convected
 from .compiled import inlined, pasted
-from .contact_values import Before, Moved, Touch
+from .contact_in_space import next_in_space
+from .contact_values import FreeInSpace, Moved, Touch
 from .contacts import solve_closed
 from .faces import own_compliance
 from .friction import set_valued
 from .lanes import Number, Pair, Runs, anywhere, choose, component, held, hold
 from .leaving import any_beyond_ends
 from .parts import Carried, Contacts, Imposed, Parts, Sizes, Timing
-from .solves import resting, strayed
+from .solves import law_of, resting, strayed
 from .space import (
     along,
     carried_in_space,
     direction,
     free_in_space,
     is_second,
-    next_in_space,
     on,
     pair_of,
-    softened_in_space,
+    past_along,
     whole_compliance,
 )
 from .trying import complete_many, place_after, soften, try_many
-from .yielding import comes_close
+from .yielding import comes_close, softened
 
 # Error of the contact forces, relative to the largest, above which the run stops.
 UNBELIEVABLE = 1e-3
@@ -71,8 +71,8 @@ def solve_several(space: bool | None, parts: Parts, runs: Runs) -> Number:
         hold(now, here + at.NEW_GAP, runs, gap)
         hold(now, here + at.NEW_SLIP, runs, slip)
         # From here on, free gap and slip lack the forces of this contact only.
-        hold(now, here + at.FREE_GAP, runs, gap - w[0] * normal + w[1] * tangential)
-        hold(now, here + at.FREE_SLIP, runs, slip - w[2] * normal + w[3] * tangential)
+        hold(now, here + at.FREE_GAP, runs, gap - w.nn * normal + w.nt * tangential)
+        hold(now, here + at.FREE_SLIP, runs, slip - w.tn * normal + w.tt * tangential)
     if space is not None:
         free_in_space(contacts, sizes, runs)
     return error
@@ -104,16 +104,8 @@ def keep_books_in_space(
     slips = pair_of(now, here + at.NEW_SLIP, at.IN_STEP, runs)
     free = pair_of(now, here + at.FREE_SLIP, at.IN_STEP, runs)
     carried_on = carried_in_space(carried, i, forces, runs)
-    c, s = direction(forces, carried_on.tangential)
-    before = Before(
-        carried_on.status,
-        on(carried_on.slip, c, s),
-        on(carried_on.earlier_slip, c, s),
-        carried_on.state[0],
-        carried_on.normal,
-        on(carried_on.tangential, c, s),
-        on(carried_on.past, c, s),
-    )
+    way = direction(forces, carried_on.tangential)
+    before = past_along(carried_on, way)
     law = contacts.codes[i]
     store_in(i, held(now, here + at.NEW_GAP, runs), contacts, state, runs)
     stuck = runs.zero
@@ -121,16 +113,16 @@ def keep_books_in_space(
         give, beyond = held(now, here + at.GIVE, runs), held(now, here + at.BEYOND, runs)
         moved = Moved(
             held(now, here + at.FREE_GAP, runs) + beyond,
-            on(free, c, s),
+            on(free, way),
             held(now, here + at.NEW_GAP, runs),
-            on(slips, c, s),
+            on(slips, way),
         )
-        touch = Touch(normal, on(forces, c, s), status, held(now, here + at.JAMMED_NOW, runs))
-        whole = whole_compliance(contacts.faces, i, runs)
-        w = along(softened_in_space(whole, give), c, s)
+        touch = Touch(normal, on(forces, way), status, held(now, here + at.JAMMED_NOW, runs))
+        whole = softened(whole_compliance(contacts.faces, i, runs), give)
+        w = along(whole, way)
         strays = strayed(carried, i, runs), strayed(carried, i + 1, runs)
         at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, runs)
-        away = on(strays, c, s)
+        away = on(strays, way)
         closed = share_states(i, touch, moved, before, carried, contacts.sums, w, away, law, at_rest, runs)
         for k in range(2):
             keep_anchor(i + k, slips[k], law, status, before.status, carried, runs)
@@ -140,19 +132,8 @@ def keep_books_in_space(
             driven += driven_work(i + 1, pushes[1], imposed.motion, n, runs)
             add(state.energies, at.CONTACT_WORK, runs, -driven)
             add(state.energies, at.DRIVE_WORK, runs, driven)
-        past, states, stuck = next_in_space(
-            (normal, status),
-            moved.free_gap,
-            free,
-            strays,
-            softened_in_space(whole, give),
-            law,
-            contacts.laws,
-            i * runs.columns + runs.first,
-            carried_on,
-            held(now, here + at.LET_GO, runs),
-            timing.step,
-        )
+        alone = FreeInSpace(moved.free_gap, free, strays, whole, held(now, here + at.LET_GO, runs))
+        past, states, stuck = next_in_space((normal, status), alone, law_of(i, contacts, runs), carried_on, timing.step)
         hold(carried, base + at.STUCK_SHARE, runs, stuck)
         for k in range(2):
             hold(carried, base + k * at.CARRIED + at.PAST_RATIO, runs, past[k])

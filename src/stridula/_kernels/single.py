@@ -5,14 +5,14 @@ from typing import Any
 from . import layout as at
 from .bookkeeping import credit, keep_books, keep_place
 from .compiled import pasted
-from .contact_values import Compliance, Moved, Touch
+from .contact_values import Compliance, Free, Moved, Touch
 from .lanes import Array, Number, Numbers, Runs, anywhere, choose, held, hold
 from .leaving import beyond_ends
 from .parts import Contacts, Parts, Timing
 from .recording import keep_probes_at
-from .solves import carried_by, strayed
+from .solves import carried_by, law_of, strayed
 from .trying import try_one
-from .yielding import comes_close, forces_of_any, path_of, yields_of
+from .yielding import comes_close, path_of, solve_any, yields_of
 
 
 @pasted
@@ -23,16 +23,13 @@ def solve_single(free: Numbers, contacts: Contacts, carried: Array, w: Complianc
     hold(contacts.now, at.BEYOND, runs, runs.zero)
     if not anywhere(comes_close(0, gap, contacts.constants, carried, runs) > 0.5):
         return Touch(runs.zero, runs.zero, runs.zero, runs.zero)
-    law, at_rest = contacts.codes[0], held(contacts.constants, at.AT_REST, runs)
-    away, before = strayed(carried, 0, runs), carried_by(carried, 0, runs)
+    alone = Free(gap, slip, strayed(carried, 0, runs), w, runs.zero)
+    law, before = law_of(0, contacts, runs), carried_by(carried, 0, runs)
     yields, path = yields_of(0, contacts.constants, runs), path_of(0, carried, runs)
-    friction = (law, contacts.laws, runs.first, at_rest)
-    normal, tangential, status, jammed, give, beyond = forces_of_any(
-        (gap, slip, away, w), friction, before, runs.zero, timing.step, yields, path, runs.zero
-    )
+    touch, give, beyond = solve_any(alone, law, before, yields, path, timing.step, runs.zero)
     hold(contacts.now, at.GIVE, runs, give)
     hold(contacts.now, at.BEYOND, runs, beyond)
-    return Touch(normal, tangential, status, jammed)
+    return touch
 
 
 @pasted

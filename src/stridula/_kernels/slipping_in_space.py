@@ -9,7 +9,7 @@ from typing import Any
 
 from . import layout as at
 from .compiled import strict, strict_pasted
-from .contact_values import BeforeInSpace, ComplianceInSpace
+from .contact_values import BeforeInSpace, ComplianceInSpace, FreeInSpace, Law
 from .friction import (
     bristle_limit,
     bristles_over,
@@ -20,7 +20,7 @@ from .friction import (
     speed_scale,
     state_ratio,
 )
-from .lanes import Array, Number, Numbers, Pair
+from .lanes import Number, Numbers, Pair
 from .law_columns import BRISTLE_DAMPING, BRISTLE_STIFFNESS, BRISTLE_VISCOUS
 from .slipping import (
     GROWTH_AT_STAGE,
@@ -135,12 +135,12 @@ def breaks_at(ratio: Pair, grows: Pair, held: Number) -> Number:
 
 
 @strict
-def slip_after(free: Pair, pull: Numbers, law: int, laws: Array, i: int, step: Number) -> tuple[Pair, Pair]:
+def slip_after(free: Pair, pull: Numbers, law: Law, step: Number) -> tuple[Pair, Pair]:
     """Return the slip ``u = free - pull r`` under a set-valued law, and its ratio: the secant method within a bracket.
 
     The ratio of incipient sliding brings it to rest.
     """
-    needed, most = undone_by(pull, free), sliding_ratio(law, laws, i, 0.0)
+    needed, most = undone_by(pull, free), sliding_ratio(law, 0.0)
     asked = size_of(needed)
     if asked <= most:
         return (0.0, 0.0), needed
@@ -149,7 +149,7 @@ def slip_after(free: Pair, pull: Numbers, law: int, laws: Array, i: int, step: N
     high, high_error, side = size_of(free), 1.0, 0
     speed, ratio, way = high, most, free
     for _ in range(TRIALS):
-        ratio = sliding_ratio(law, laws, i, speed / step)
+        ratio = sliding_ratio(law, speed / step)
         stiff = speed + ratio * pull[0], ratio * pull[1], ratio * pull[2], speed + ratio * pull[3]
         way = undone_by(stiff, free)
         error = 1.0 / size_of(way) - 1.0
@@ -189,20 +189,12 @@ def is_straight(
 
 @strict
 def slide_straight(
-    slip: Pair,
-    begin: Number,
-    drive: tuple[Pair, Pair],
-    pull: Numbers,
-    way: Pair,
-    law: int,
-    laws: Array,
-    i: int,
-    step: Number,
+    slip: Pair, begin: Number, drive: tuple[Pair, Pair], pull: Numbers, way: Pair, law: Law, step: Number
 ) -> tuple[Pair, Pair, Number]:
     """Slide along a line, as in the plane."""
     drives = along(drive[0], way), along(drive[1], way)
     pulled = along(way, times(pull, way))
-    later, past, stuck = slide_on_line(along(slip, way), begin, drives, pulled, 1.0, law, laws, i, step)
+    later, past, stuck = slide_on_line(along(slip, way), begin, drives, pulled, 1.0, law, step)
     return (later * way[0], later * way[1]), (past * way[0], past * way[1]), stuck
 
 
@@ -230,37 +222,21 @@ def hold_from(begin: Number, drive: tuple[Pair, Pair], pull: Numbers, held: Numb
 
 
 @strict_pasted
-def part_in_space(
-    slip: Pair,
-    drive: Pair,
-    pull: Numbers,
-    law: int,
-    laws: Array,
-    i: int,
-    step: Number,
-) -> Number:
+def part_in_space(slip: Pair, drive: Pair, pull: Numbers, law: Law, step: Number) -> Number:
     """Return the size of the next part of the way: as `slipping.part_of`, and where the slip turns or ends, small."""
     speed = size_of(slip)
     if speed == 0.0:
         return 1.0 / MOST_TURNS
-    friction, way = sliding_ratio(law, laws, i, speed / step), (slip[0] / speed, slip[1] / speed)
+    friction, way = sliding_ratio(law, speed / step), (slip[0] / speed, slip[1] / speed)
     dragged = times(pull, way)
     rate = size_of(plus(drive, -friction, dragged))
-    part = part_of(speed, rate, friction, along(way, dragged), law, laws, i, step)
+    part = part_of(speed, rate, friction, along(way, dragged), law, step)
     return max(1.0 / (1.0 / part + rate / speed), min(part, 1.0 / MOST_TURNS))
 
 
 @strict
 def slide_through(
-    slip: Pair,
-    begin: Number,
-    drive: tuple[Pair, Pair],
-    pull: Numbers,
-    way: Pair,
-    law: int,
-    laws: Array,
-    i: int,
-    step: Number,
+    slip: Pair, begin: Number, drive: tuple[Pair, Pair], pull: Numbers, way: Pair, law: Law, step: Number
 ) -> tuple[Pair, Pair, Number]:
     """Slide from a time of the step on, under a set-valued law.
 
@@ -269,8 +245,8 @@ def slide_through(
     continuous where a slip turns about zero. Returns the same as `slipping.slide_through`.
     """
     if is_straight(slip, drive, pull, way):
-        return slide_straight(slip, begin, drive, pull, way, law, laws, i, step)
-    later, past, held = (0.0, 0.0), (0.0, 0.0), holding_ratio(law, laws, i, True)
+        return slide_straight(slip, begin, drive, pull, way, law, step)
+    later, past, held = (0.0, 0.0), (0.0, 0.0), holding_ratio(law, True)
     # From here on at rest, which it is not yet at the beginning.
     rested = False
     for _ in range(2 * MOST_PARTS):
@@ -283,13 +259,13 @@ def slide_through(
                 return later, past, 1.0 - begin
             begin = end
         driven = plus(drive[0], begin, drive[1])
-        size = min(part_in_space(slip, driven, pull, law, laws, i, step), 1.0 - begin)
+        size = min(part_in_space(slip, driven, pull, law, step), 1.0 - begin)
         matrix = scaled(pull, STAGE * size)
         free = plus(plus(slip, size * STAGE, driven), size * GROWTH_AT_STAGE * size, drive[1])
-        _, first = slip_after(free, matrix, law, laws, i, step)
+        _, first = slip_after(free, matrix, law, step)
         driven = plus(driven, 0.5 * size, drive[1])
         free = plus(plus(slip, size, driven), -size * (1.0 - STAGE), times(pull, first))
-        slip, second = slip_after(free, matrix, law, laws, i, step)
+        slip, second = slip_after(free, matrix, law, step)
         more, less = stage_moments(begin, size, first, second)
         later, past, begin = plus(later, 1.0, more), plus(past, 1.0, less), begin + size
         rested = slip[0] == 0.0 and slip[1] == 0.0
@@ -328,15 +304,13 @@ def after_break(
     held: Number,
     drive: tuple[Pair, Pair],
     pull: Numbers,
-    law: int,
-    laws: Array,
-    i: int,
+    law: Law,
     step: Number,
 ) -> tuple[Any, ...]:
     """Slide on from a stick that broke within the last step; results as those of `ratio_over_step`."""
     grows = plus(needed, -1.0, earlier)
     broke = breaks_at(earlier, grows, held)
-    sliding = sliding_ratio(law, laws, i, 0.0)
+    sliding = sliding_ratio(law, 0.0)
     way = direction_of(plus(earlier, broke, grows) if broke > 0.0 else needed, (1.0, 0.0))
     friction = sliding * way[0], sliding * way[1]
     stuck, left, third = 0.5 * broke * broke, 0.5 * (1.0 - broke * broke), broke**3 / 3.0
@@ -347,32 +321,23 @@ def after_break(
     # Ratios without which it would have kept still, then those of the change of its normal force.
     free = plus(plus(earlier, -1.0, friction), 1.0, plus(driven, -1.0, needed))
     begun = plus(((1.0 / 3.0 - third) * drive[1][0], (1.0 / 3.0 - third) * drive[1][1]), left, times(pull, free))
-    more, rest, stuck = slide_through(begun, 0.0, drive, pull, way, law, laws, i, step)
+    more, rest, stuck = slide_through(begun, 0.0, drive, pull, way, law, step)
     return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
 
 
 @strict
 def ratio_over_step(
-    normal: Number,
-    gap: Number,
-    slips: Pair,
-    strays: Pair,
-    w: ComplianceInSpace,
-    law: int,
-    laws: Array,
-    i: int,
-    before: BeforeInSpace,
-    let_go: bool,
-    step: Number,
+    normal: Number, free: FreeInSpace, law: Law, before: BeforeInSpace, step: Number
 ) -> tuple[Any, ...]:
     """Return the ratios of forces over a step under a set-valued law, past parts, status and share of stick.
 
     As `slipping.ratio_over_step`; `gap` and `slips` are those without the forces of this contact.
     """
+    gap, slips, strays, w = free.gap, free.slips, free.strays, free.w
     was, last, past = before.status, before.slip, before.past
     pull = normal * w.aa, normal * w.ab, normal * w.ba, normal * w.bb
     moved = slips[0] + w.an * normal, slips[1] + w.bn * normal
-    held = holding_ratio(law, laws, i, was == STICKING and not let_go)
+    held = holding_ratio(law, was == STICKING and free.let_go <= 0.5)
     missed = moved[0] + strays[0], moved[1] + strays[1]
     driven = undone_by(pull, missed)
     needed = driven if was == SLIDING else ratio_of_stick(gap, plus(slips, 1.0, strays), w, driven)
@@ -383,71 +348,63 @@ def ratio_over_step(
         earlier = (share * before.tangential[0], share * before.tangential[1]) if share > 0.0 else needed
         grows = plus(needed, -1.0, earlier)
         beyond = plus(needed, 1.0, grows)
-        if not let_go and asked <= held and size_of(beyond) <= held:
+        if free.let_go <= 0.5 and asked <= held and size_of(beyond) <= held:
             return needed, (0.5 * needed[0] + grows[0] / 3.0, 0.5 * needed[1] + grows[1] / 3.0), STICKING, 1.0
         drive = missed, times(pull, grows) if asked < BEYOND else (0.0, 0.0)
         if asked > held:
-            return after_break(earlier, needed, driven, held, drive, pull, law, laws, i, step)
+            return after_break(earlier, needed, driven, held, drive, pull, law, step)
         broke = breaks_at(needed, grows, held)
         at_break = plus(needed, broke, grows)
         way = direction_of(at_break, direction_of(beyond, (1.0, 0.0)))
         first, less = moments_of(0.0, broke, needed, plus(needed, 0.5 * broke, grows), at_break)
-        more, rest, stuck = slide_through((0.0, 0.0), broke, drive, pull, way, law, laws, i, step)
+        more, rest, stuck = slide_through((0.0, 0.0), broke, drive, pull, way, law, step)
         ratio = plus(first, 1.0, more)
         ratio = ratio[0] + 0.5 * needed[0] - grows[0] / 6.0, ratio[1] + 0.5 * needed[1] - grows[1] / 6.0
         return ratio, plus(less, 1.0, rest), STOPPED if stuck > 0.0 else SLIDING, broke + stuck
     rests = needed, (0.5 * needed[0], 0.5 * needed[1]), STICKING, 1.0
     if was == STICKING:
         # It came to rest within the last step.
-        if not let_go and 2.0 * size_of(plus(needed, -1.0, past)) <= held:
+        if free.let_go <= 0.5 and 2.0 * size_of(plus(needed, -1.0, past)) <= held:
             return rests
         left = plus(missed, -1.0, times(pull, past))
         left = 2.0 * left[0], 2.0 * left[1]
         way = direction_of(left, (1.0, 0.0))
-        more, rest, stuck = slide_through((0.0, 0.0), 0.0, (left, (0.0, 0.0)), pull, way, law, laws, i, step)
+        more, rest, stuck = slide_through((0.0, 0.0), 0.0, (left, (0.0, 0.0)), pull, way, law, step)
         return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
     begun = 0.5 * (last[0] + moved[0]), 0.5 * (last[1] + moved[1])
     change = moved[0] - last[0], moved[1] - last[1]
     if was != SLIDING:
         # It lands: half of its force acts before the step.
-        if not let_go and asked <= held:
+        if free.let_go <= 0.5 and asked <= held:
             return rests
         speed, way = size_of(begun), direction_of(begun, direction_of(change, (1.0, 0.0)))
-        friction = 0.5 * sliding_ratio(law, laws, i, speed / step)
+        friction = 0.5 * sliding_ratio(law, speed / step)
         past = friction * way[0], friction * way[1]
     slip = plus(begun, -1.0, times(pull, past))
     way = direction_of(slip, direction_of(change, (1.0, 0.0)))
-    more, rest, stuck = slide_through(slip, 0.0, (change, (0.0, 0.0)), pull, way, law, laws, i, step)
+    more, rest, stuck = slide_through(slip, 0.0, (change, (0.0, 0.0)), pull, way, law, step)
     return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
 
 
 @strict_pasted
-def friction_after(law: int, laws: Array, i: int, state: Pair, speed: Number, time: Number) -> Pair:
+def friction_after(law: Law, state: Pair, speed: Number, time: Number) -> Pair:
     """Return the factors of the state and of the slip velocity in the ratio of a law with internal state after a time.
 
     Both depend on the speed alone; only LuGre's bristles contribute the first.
     """
-    if law == at.LUGRE:
-        kept, share, _, _, _ = bristles_over(laws, i, speed, time)
-        felt = laws[i, BRISTLE_STIFFNESS] - laws[i, BRISTLE_DAMPING] * speed / bristle_limit(laws, i, speed)[0]
-        return felt * kept, felt * time * share + laws[i, BRISTLE_DAMPING] + laws[i, BRISTLE_VISCOUS]
-    ratio, slope = ratio_after(law, laws, i, state[0], speed, time)
+    table, row = law.table, law.row
+    if law.code == at.LUGRE:
+        kept, share, _, _, _ = bristles_over(law, speed, time)
+        felt = table[row, BRISTLE_STIFFNESS] - table[row, BRISTLE_DAMPING] * speed / bristle_limit(law, speed)[0]
+        return felt * kept, felt * time * share + table[row, BRISTLE_DAMPING] + table[row, BRISTLE_VISCOUS]
+    ratio, slope = ratio_after(law, state[0], speed, time)
     return 0.0, ratio / speed if speed > 0.0 else slope
 
 
 @strict_pasted
-def moved_at(
-    speed: Number,
-    free: Pair,
-    pull: Numbers,
-    law: int,
-    laws: Array,
-    i: int,
-    state: Pair,
-    time: Number,
-) -> tuple[Pair, Pair]:
+def moved_at(speed: Number, free: Pair, pull: Numbers, law: Law, state: Pair, time: Number) -> tuple[Pair, Pair]:
     """Return the slip velocity that follows from an assumed speed, and the ratios."""
-    holds, drags = friction_after(law, laws, i, state, speed, time)
+    holds, drags = friction_after(law, state, speed, time)
     kept = holds * state[0], holds * state[1]
     left = plus(free, -1.0, times(pull, kept))
     stiff = 1.0 + drags * pull[0], drags * pull[1], drags * pull[2], 1.0 + drags * pull[3]
@@ -457,23 +414,14 @@ def moved_at(
 
 
 @strict
-def velocity_after(
-    free: Pair,
-    pull: Numbers,
-    guess: Number,
-    law: int,
-    laws: Array,
-    i: int,
-    state: Pair,
-    time: Number,
-) -> tuple[Pair, Pair]:
+def velocity_after(free: Pair, pull: Numbers, guess: Number, law: Law, state: Pair, time: Number) -> tuple[Pair, Pair]:
     """Return the slip velocity ``v = free - pull r`` and the ratios of a law with internal state after some time.
 
     At a given speed the law is linear in the velocity; the speed sought is that which results, on the scale
     ``sinh(y)``, so that creep and sliding share one scale: the secant method within a bracket.
     """
-    scale = speed_scale(law, laws, i, state[0])
-    velocity, ratio = moved_at(0.0, free, pull, law, laws, i, state, time)
+    scale = speed_scale(law, state[0])
+    velocity, ratio = moved_at(0.0, free, pull, law, state, time)
     speed = size_of(velocity)
     if speed == 0.0:
         return velocity, ratio
@@ -483,7 +431,7 @@ def velocity_after(
     high_error = 1.0
     for _ in range(TRIALS):
         speed = scale * math.sinh(high)
-        velocity, ratio = moved_at(speed, free, pull, law, laws, i, state, time)
+        velocity, ratio = moved_at(speed, free, pull, law, state, time)
         reached = size_of(velocity)
         if reached == 0.0:
             high_error = 1.0
@@ -502,7 +450,7 @@ def velocity_after(
             if not low < y < high:
                 break
         speed = scale * math.sinh(y)
-        velocity, ratio = moved_at(speed, free, pull, law, laws, i, state, time)
+        velocity, ratio = moved_at(speed, free, pull, law, state, time)
         reached = size_of(velocity)
         error = speed / reached - 1.0 if reached > 0.0 else 1.0
         if abs(error) <= SETTLED:
@@ -519,41 +467,39 @@ def velocity_after(
 
 
 @strict_pasted
-def state_after(law: int, laws: Array, i: int, state: Pair, velocity: Pair, time: Number) -> Pair:
+def state_after(law: Law, state: Pair, velocity: Pair, time: Number) -> Pair:
     """Return the internal states after some time at a constant slip velocity, exactly."""
     speed = size_of(velocity)
-    if law == at.LUGRE:
-        kept, share, _, _, _ = bristles_over(laws, i, speed, time)
+    if law.code == at.LUGRE:
+        kept, share, _, _, _ = bristles_over(law, speed, time)
         taken = time * share
         return kept * state[0] + taken * velocity[0], kept * state[1] + taken * velocity[1]
-    return next_state(law, laws, i, state[0], speed, time), state[1]
+    return next_state(law, state[0], speed, time), state[1]
 
 
 @strict
-def ratio_of_state(law: int, laws: Array, i: int, state: Pair, velocity: Pair) -> Pair:
+def ratio_of_state(law: Law, state: Pair, velocity: Pair) -> Pair:
     """Return the ratios of a law with internal state at a slip velocity."""
+    table, row = law.table, law.row
     speed = size_of(velocity)
-    if law == at.LUGRE:
-        turned = plus(velocity, -speed / bristle_limit(laws, i, speed)[0], state)
-        stiffness, damping, viscous = laws[i, BRISTLE_STIFFNESS], laws[i, BRISTLE_DAMPING], laws[i, BRISTLE_VISCOUS]
+    if law.code == at.LUGRE:
+        turned = plus(velocity, -speed / bristle_limit(law, speed)[0], state)
+        stiffness, damping, viscous = (
+            table[row, BRISTLE_STIFFNESS],
+            table[row, BRISTLE_DAMPING],
+            table[row, BRISTLE_VISCOUS],
+        )
         return (
             stiffness * state[0] + damping * turned[0] + viscous * velocity[0],
             stiffness * state[1] + damping * turned[1] + viscous * velocity[1],
         )
-    ratio, way = state_ratio(law, laws, i, state[0], speed), direction_of(velocity, (1.0, 0.0))
+    ratio, way = state_ratio(law, state[0], speed), direction_of(velocity, (1.0, 0.0))
     return ratio * way[0], ratio * way[1]
 
 
 @strict
 def ratio_with_state(
-    normal: Number,
-    slips: Pair,
-    w: ComplianceInSpace,
-    law: int,
-    laws: Array,
-    i: int,
-    before: BeforeInSpace,
-    step: Number,
+    normal: Number, slips: Pair, w: ComplianceInSpace, law: Law, before: BeforeInSpace, step: Number
 ) -> tuple[Pair, ...]:
     """Return the ratios of forces over a step under a law with internal state, past parts, and the new states.
 
@@ -565,7 +511,7 @@ def ratio_with_state(
     begun, drive = (0.5 * (last[0] + moved[0]), 0.5 * (last[1] + moved[1])), plus(moved, -1.0, last)
     grows = 0.0, 0.0
     if was == SEPARATED:
-        past = ratio_of_state(law, laws, i, state, (begun[0] / step, begun[1] / step))
+        past = ratio_of_state(law, state, (begun[0] / step, begun[1] / step))
         past = 0.5 * past[0], 0.5 * past[1]
     elif before.normal > 0.0:
         share = changed_to(normal, before.normal)
@@ -579,7 +525,7 @@ def ratio_with_state(
     pulled = 0.5 * (pull[0] + pull[3])
     if squares > 0.0:
         pulled = (along(slip, times(pull, slip)) + along(drive, times(pull, drive))) / squares
-    count = parts_with_state(size_of(slip), size_of(drive), pulled, law, laws, i, step)
+    count = parts_with_state(size_of(slip), size_of(drive), pulled, law, step)
     size, later, rest, speed = 1.0 / count, (0.0, 0.0), (0.0, 0.0), size_of(slip) / step
     time, matrix = STAGE * size * step, scaled(pull, STAGE * size / step)
     for k in range(count):
@@ -587,13 +533,13 @@ def ratio_with_state(
         driven = plus(drive, begin, grows)
         free = plus(plus(slip, size * STAGE, driven), size * GROWTH_AT_STAGE * size, grows)
         free = free[0] / step, free[1] / step
-        velocity, first = velocity_after(free, matrix, speed, law, laws, i, state, time)
-        state, speed = state_after(law, laws, i, state, velocity, size * step - time), size_of(velocity)
+        velocity, first = velocity_after(free, matrix, speed, law, state, time)
+        state, speed = state_after(law, state, velocity, size * step - time), size_of(velocity)
         driven = plus(driven, 0.5 * size, grows)
         free = plus(plus(slip, size, driven), -size * (1.0 - STAGE), times(pull, first))
         free = free[0] / step, free[1] / step
-        velocity, second = velocity_after(free, matrix, speed, law, laws, i, state, time)
-        state, speed = state_after(law, laws, i, state, velocity, time), size_of(velocity)
+        velocity, second = velocity_after(free, matrix, speed, law, state, time)
+        state, speed = state_after(law, state, velocity, time), size_of(velocity)
         more, less = stage_moments(begin, size, first, second)
         later, rest = plus(later, 1.0, more), plus(rest, 1.0, less)
         slip = velocity[0] * step, velocity[1] * step

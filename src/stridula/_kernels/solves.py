@@ -1,70 +1,40 @@
 """Step 5 for a contact of one run, or of several side by side, under any law of friction."""
 
-from typing import Any
-
 from . import layout as at
-from .compiled import inlined, overloaded, pasted, strict, strict_pasted
+from .compiled import inlined, pasted, strict_pasted
 from .contact import SLIDING, STICKING, ratio_under, solve_contact, turn_round
-from .contact_values import Before, Compliance
+from .contact_values import Before, Compliance, Free, Law, Touch
 from .friction import set_valued
-from .lanes import (
-    Array,
-    Number,
-    Numbers,
-    Pair,
-    Runs,
-    anywhere,
-    choose,
-    everywhere,
-    held,
-    lane,
-    magnitude,
-    spread,
-    with_lane,
-)
+from .lanes import Array, Number, Numbers, Pair, Runs, anywhere, choose, everywhere, held, magnitude
+from .lanewise import lanewise
 from .law_columns import NEW_STATE
+from .parts import Contacts
 from .slipping import STOPPED
-from .vectors import LANES, VECTOR
 
 
-def solve(
-    gap: Number,
-    slip: Number,
-    strayed: Number,
-    w: Compliance,
-    law: int,
-    laws: Array,
-    number: int,
-    before: Before,
-    let_go: Number,
-    step: Number,
-) -> Numbers:
-    """Return normal force, tangential force, status and whether it jams, all as numbers of runs."""
-    return solve_one_run(gap, slip, strayed, w, law, laws, number, before, let_go, step)
+@lanewise(Touch(0.0, 0.0, 0.0, 0.0))
+def solve(free: Free, law: Law, before: Before, step: Number) -> Touch:
+    """Return forces, status and whether it jams, of a contact under any law."""
+    return solve_contact(free, law, before, step)
 
 
-def next_on_way(
-    touch: Pair,
-    gap: Number,
-    slip: Number,
-    strayed: Number,
-    w: Compliance,
-    law: int,
-    laws: Array,
-    number: int,
-    before: Before,
-    let_go: Number,
-    step: Number,
-) -> Numbers:
+@lanewise((0.0, 0.0, 0.0))
+def next_on_way(touch: Pair, free: Free, law: Law, before: Before, step: Number) -> Numbers:
     """Return the past parts of the ratios for the next step, the internal states, and shares of stick of this step.
 
     `touch` are normal force and status. Where bodies are apart, states are those of new contacts.
     """
-    return next_on_way_of_run(touch, gap, slip, strayed, w, law, laws, number, before, let_go, step)
+    normal, status = touch
+    if status < 0.5:
+        return 0.0, law.table[law.row, NEW_STATE], 0.0
+    if law.code == at.COULOMB or (set_valued(law.code) and free.w.tt == 0.0):
+        return 0.0, before.state, 1.0 if status == STICKING else 0.0
+    _, past, state, _, stuck = ratio_under(normal, free, law, before, step)
+    return past, state, stuck
 
 
 @strict_pasted
-def coulomb(gap: Number, slip: Number, w: Compliance, mu: Number) -> Numbers:
+def coulomb(gap: Number, slip: Number, w: Compliance, mu: Number) -> Touch:
     """Do `solve` under Coulomb's law without branches (5a to 5c); `slip` is the distance to the anchor of sticking.
 
     The result equals that of `contact.solve_coulomb`, as a test checks.
@@ -80,7 +50,7 @@ def coulomb(gap: Number, slip: Number, w: Compliance, mu: Number) -> Numbers:
     tangential = choose(slides, directed * normal, held)
     jammed = choose(free > 0.0, 0.0, choose(slides, 0.0, 1.0))
     apart = gap >= 0.0
-    return (
+    return Touch(
         choose(apart, 0.0, normal),
         choose(apart, 0.0, tangential),
         choose(apart, 0.0, choose(slides, 2.0, 1.0)),
@@ -89,184 +59,26 @@ def coulomb(gap: Number, slip: Number, w: Compliance, mu: Number) -> Numbers:
 
 
 @strict_pasted
-def turned_round(
-    gap: Number,
-    slip: Number,
-    last_slip: Number,
-    w: Compliance,
-    mu: Number,
-    normal: Number,
-    tangential: Number,
-    status: Number,
-) -> Numbers:
-    """Return forces and status under Coulomb's law where the slip ends within the step (5d), else as given.
+def turned_round(gap: Number, slip: Number, last_slip: Number, w: Compliance, mu: Number, touch: Touch) -> Touch:
+    """Return the contact under Coulomb's law where the slip ends within the step (5d), else as given.
 
     `last_slip` is zero for contacts that did not slide.
     """
     turns, pressed, turned, slides = turn_round(gap, slip, last_slip, w, mu, mu)
     turns = choose(turns, choose(gap < 0.0, magnitude(last_slip), 0.0), 0.0) > 0.0
-    normal, tangential = choose(turns, pressed, normal), choose(turns, turned, tangential)
-    return normal, tangential, choose(turns, choose(slides, 2.0, 1.0), status)
-
-
-@strict
-def solve_one_run(
-    gap: Number,
-    slip: Number,
-    strayed: Number,
-    w: Compliance,
-    law: int,
-    laws: Array,
-    number: int,
-    before: Before,
-    let_go: Number,
-    step: Number,
-) -> Numbers:
-    """Do `solve` for one run."""
-    normal, tangential, new, jammed = solve_contact(
-        gap, slip, strayed, w, law, laws, number, before, let_go > 0.5, step
-    )
-    return normal, tangential, float(new), 1.0 if jammed else 0.0
-
-
-@strict
-def next_on_way_of_run(
-    touch: Pair,
-    gap: Number,
-    slip: Number,
-    strayed: Number,
-    w: Compliance,
-    law: int,
-    laws: Array,
-    number: int,
-    before: Before,
-    let_go: Number,
-    step: Number,
-) -> Numbers:
-    """Do `next_on_way` for one run."""
-    if touch[1] < 0.5:
-        return 0.0, laws[number, NEW_STATE], 0.0
-    if law == at.COULOMB or (set_valued(law) and w.tt == 0.0):
-        return 0.0, before.state, 1.0 if touch[1] == STICKING else 0.0
-    _, past, state, _, stuck = ratio_under(
-        touch[0], gap, slip, strayed, w, law, laws, number, before, let_go > 0.5, step
-    )
-    return past, state, stuck
-
-
-@strict
-def lanes_of(before: Before, i: int) -> Before:
-    """Return the numbers in a lane of what a contact carries."""
-    status, last, earlier, state, normal, tangential, past = before
-    return Before(
-        lane(status, i),
-        lane(last, i),
-        lane(earlier, i),
-        lane(state, i),
-        lane(normal, i),
-        lane(tangential, i),
-        lane(past, i),
+    return Touch(
+        choose(turns, pressed, touch.normal),
+        choose(turns, turned, touch.tangential),
+        choose(turns, choose(slides, 2.0, 1.0), touch.status),
+        touch.jammed,
     )
 
 
-@strict
-def solve_runs(
-    gap: Number,
-    slip: Number,
-    strayed: Number,
-    w: Compliance,
-    law: int,
-    laws: Array,
-    number: int,
-    before: Before,
-    let_go: Number,
-    step: Number,
-) -> Numbers:
-    """Do `solve` for vectors of runs."""
-    normal, tangential, new, jammed = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    for i in range(LANES):
-        one = solve_one_run(
-            lane(gap, i),
-            lane(slip, i),
-            lane(strayed, i),
-            Compliance(lane(w.nn, i), lane(w.nt, i), lane(w.tn, i), lane(w.tt, i)),
-            law,
-            laws,
-            number + i,
-            lanes_of(before, i),
-            lane(let_go, i),
-            step,
-        )
-        normal, tangential = with_lane(normal, i, one[0]), with_lane(tangential, i, one[1])
-        new, jammed = with_lane(new, i, one[2]), with_lane(jammed, i, one[3])
-    return normal, tangential, new, jammed
-
-
-@strict
-def next_on_way_of_runs(
-    touch: Numbers,
-    gap: Number,
-    slip: Number,
-    strayed: Number,
-    w: Compliance,
-    law: int,
-    laws: Array,
-    number: int,
-    before: Before,
-    let_go: Number,
-    step: Number,
-) -> Numbers:
-    """Do `next_on_way` for vectors of runs."""
-    past, state, stuck = spread(0.0), before.state, spread(0.0)
-    if law == at.COULOMB:
-        return past, state, stuck
-    for i in range(LANES):
-        one = next_on_way_of_run(
-            (lane(touch[0], i), lane(touch[1], i)),
-            lane(gap, i),
-            lane(slip, i),
-            lane(strayed, i),
-            Compliance(lane(w.nn, i), lane(w.nt, i), lane(w.tn, i), lane(w.tt, i)),
-            law,
-            laws,
-            number + i,
-            lanes_of(before, i),
-            lane(let_go, i),
-            step,
-        )
-        past, state = with_lane(past, i, one[0]), with_lane(state, i, one[1])
-        stuck = with_lane(stuck, i, one[2])
-    return past, state, stuck
-
-
-@overloaded(solve)
-def _overload_solve(
-    gap: Any, slip: Any, strayed: Any, w: Any, law: Any, laws: Any, number: Any, before: Any, let_go: Any, step: Any
-) -> Any:
-    chosen = solve_runs if gap is VECTOR else solve_one_run
-    return lambda gap, slip, strayed, w, law, laws, number, before, let_go, step: chosen(
-        gap, slip, strayed, w, law, laws, number, before, let_go, step
-    )
-
-
-@overloaded(next_on_way)
-def _overload_next_on_way(
-    touch: Any,
-    gap: Any,
-    slip: Any,
-    strayed: Any,
-    w: Any,
-    law: Any,
-    laws: Any,
-    number: Any,
-    before: Any,
-    let_go: Any,
-    step: Any,
-) -> Any:
-    chosen = next_on_way_of_runs if slip is VECTOR else next_on_way_of_run
-    return lambda touch, gap, slip, strayed, w, law, laws, number, before, let_go, step: chosen(
-        touch, gap, slip, strayed, w, law, laws, number, before, let_go, step
-    )
+@inlined
+def law_of(i: int, contacts: Contacts, runs: Runs) -> Law:
+    """Return the law of contact `i`."""
+    at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, runs)
+    return Law(contacts.codes[i], contacts.laws, i * runs.columns + runs.first, at_rest)
 
 
 @inlined
@@ -308,26 +120,14 @@ def anchor_after(anchor: Number, place: Number, status: Number, was: Number) -> 
 
 
 @pasted
-def forces_of_one(
-    gap: Number,
-    slip: Number,
-    away: Number,
-    w: Compliance,
-    law: int,
-    laws: Array,
-    number: int,
-    at_rest: Number,
-    before: Before,
-    let_go: Number,
-    step: Number,
-    zero: Number,
-) -> Numbers:
-    """Return normal force, tangential force, status and whether it jams, for one contact."""
-    if law == at.COULOMB and everywhere(w.tt > 0.0):
-        normal, tangential, status, jammed = coulomb(gap, slip + away, w, at_rest)
+def solve_in_plane(free: Free, law: Law, before: Before, step: Number, zero: Number) -> Touch:
+    """Do `solve`, for Coulomb's law without branches."""
+    gap, w = free.gap, free.w
+    if law.code == at.COULOMB and everywhere(w.tt > 0.0):
+        touch = coulomb(gap, free.slip + free.strayed, w, law.at_rest)
         slid = choose(before.status > SLIDING - 0.5, before.slip, zero)
-        on = choose(status > SLIDING - 0.5, tangential * slid, zero) > 0.0
+        on = choose(touch.status > SLIDING - 0.5, touch.tangential * slid, zero) > 0.0
         if anywhere(choose(on, zero, choose(gap < 0.0, magnitude(slid), zero)) > 0.0):
-            normal, tangential, status = turned_round(gap, slip, slid, w, at_rest, normal, tangential, status)
-        return normal, tangential, status, jammed
-    return solve(gap, slip, away, w, law, laws, number, before, let_go, step)
+            touch = turned_round(gap, free.slip, slid, w, law.at_rest, touch)
+        return touch
+    return solve(free, law, before, step)

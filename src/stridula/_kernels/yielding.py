@@ -1,14 +1,28 @@
 """Step 5 for contacts with a stiffness: a force that grows with the indentation replaces the unilateral constraint."""
 
-from typing import Any
+from typing import Any, TypeVar
 
 from . import layout as at
-from .compiled import called, inlined, pasted
-from .contact_values import Before, BeforeInSpace, Compliance, Indentations, Yielding
-from .lanes import Array, Number, Numbers, Pair, Runs, anywhere, choose, everywhere, held, magnitude
+from .compiled import called, inlined, overloaded, pasted
+from .contact_values import (
+    Compliance,
+    ComplianceInSpace,
+    Free,
+    FreeInSpace,
+    Indentations,
+    Law,
+    Touch,
+    TouchInSpace,
+    Yielding,
+)
+from .lanes import Array, Number, Pair, Runs, anywhere, choose, everywhere, held, magnitude
+from .lanewise import choose_all
 from .pressing import press, share_of
-from .solves import forces_of_one
-from .space import softened_in_space, solve_in_space
+from .solves import solve_in_plane
+from .space import solve_in_space
+
+W = TypeVar("W", Compliance, ComplianceInSpace)
+F = TypeVar("F", Free, FreeInSpace)
 
 # Smallest slope of the force, times the compliance of the bodies: where the force falls or is flat, Newton's method
 # takes this slope, which only costs it a few more steps.
@@ -50,10 +64,72 @@ def comes_close(i: int, gap: Number, constants: Array, carried: Array, runs: Run
     return choose(gap < 0.0, 1.0, choose(was > 0.0, 1.0, runs.zero))
 
 
-@inlined
-def softened(w: Compliance, give: Number) -> Compliance:
-    """Return a compliance with an additional one of the normal."""
-    return Compliance(w.nn + give, w.nt, w.tn, w.tt)
+def softened(w: W, give: Number) -> W:
+    """Return a compliance of the plane or of space with an additional one of the normal."""
+    return w._replace(nn=w.nn + give)
+
+
+def about_indentation(free: F, give: Number, beyond: Number) -> F:
+    """Return a contact that yields linearly about an indentation as a rigid one."""
+    return free._replace(gap=free.gap + beyond, w=softened(free.w, give))
+
+
+def without_forces(free: Any, zero: Number) -> Any:
+    """Return a contact of the plane or of space without forces."""
+    return Touch(zero, zero, zero, zero) if isinstance(free, Free) else TouchInSpace(zero, (zero, zero), zero, zero)
+
+
+@overloaded(softened)
+def _softened(w: Any, give: Any) -> Any:
+    make = w.instance_class
+    return lambda w, give: make(w.nn + give, *w[1:])
+
+
+@overloaded(about_indentation)
+def _about_indentation(free: Any, give: Any, beyond: Any) -> Any:
+    make = free.instance_class
+    return lambda free, give, beyond: make(free.gap + beyond, *free[1:3], softened(free.w, give), free.let_go)
+
+
+@overloaded(without_forces)
+def _without_forces(free: Any, zero: Any) -> Any:
+    if free.instance_class is Free:
+        return lambda free, zero: Touch(zero, zero, zero, zero)
+    return lambda free, zero: TouchInSpace(zero, (zero, zero), zero, zero)
+
+
+def gap_under(free: Any, touch: Any) -> Number:
+    """Return the gap of a contact of the plane or of space under its own forces."""
+    pressed = free.gap + free.w.nn * touch.normal
+    if isinstance(free, Free):
+        return pressed - free.w.nt * touch.tangential
+    return pressed - free.w.na * touch.tangential[0] - free.w.nb * touch.tangential[1]
+
+
+def solve_rigid(free: Any, law: Law, before: Any, step: Number, zero: Number) -> Any:
+    """Return the contact of the plane or of space with the compliance given."""
+    if isinstance(free, Free):
+        return solve_in_plane(free, law, before, step, zero)
+    return solve_in_space(free, law, before, step)
+
+
+@overloaded(gap_under)
+def _gap_under(free: Any, touch: Any) -> Any:
+    if free.instance_class is Free:
+        return lambda free, touch: free.gap + free.w.nn * touch.normal - free.w.nt * touch.tangential
+
+    def in_space(free: Any, touch: Any) -> Any:
+        first, second = touch.tangential
+        return free.gap + free.w.nn * touch.normal - free.w.na * first - free.w.nb * second
+
+    return in_space
+
+
+@overloaded(solve_rigid)
+def _solve_rigid(free: Any, law: Any, before: Any, step: Any, zero: Any) -> Any:
+    if free.instance_class is Free:
+        return lambda free, law, before, step, zero: solve_in_plane(free, law, before, step, zero)
+    return lambda free, law, before, step, zero: solve_in_space(free, law, before, step)
 
 
 @inlined
@@ -85,133 +161,41 @@ def is_settled(
 
 
 @pasted
-def forces_of_any(
-    free: tuple[Number, Number, Number, Compliance],
-    friction: tuple[int, Array, int, Number],
-    before: Before,
-    let_go: Number,
-    step: Number,
-    yields: Yielding,
-    path: Indentations,
-    zero: Number,
-) -> Numbers:
-    """Return the result of `forces_of_one` for a contact that may yield, its give and the indentation beyond that.
+def solve_any(
+    free: Any, law: Law, before: Any, yields: Yielding, path: Indentations, step: Number, zero: Number
+) -> tuple[Any, Number, Number]:
+    """Return a contact of the plane or of space that may yield, its give and the indentation beyond that.
 
-    `free` are gap, slip, distance of a stick from its anchor, compliance; `friction` the law, all laws, the number
-    among these and the ratio at rest; `path` the indentations of the last three steps.
+    `path` are the indentations of the last three steps.
     """
     if yields_anywhere(yields):
-        return forces_yielding(free, friction, before, let_go, step, yields, path, zero)
-    gap, slip, away, w = free
-    law, laws, number, at_rest = friction
-    one = forces_of_one(gap, slip, away, w, law, laws, number, at_rest, before, let_go, step, zero)
-    return one[0], one[1], one[2], one[3], zero, zero
+        return solve_yielding(free, law, before, yields, path, step, zero)
+    return solve_rigid(free, law, before, step, zero), zero, zero
 
 
 @called
-def forces_yielding(
-    free: tuple[Any, ...],
-    friction: tuple[int, Array, int, Number],
-    before: Before,
-    let_go: Number,
-    step: Number,
-    yields: Yielding,
-    path: Indentations,
-    zero: Number,
-) -> Numbers:
-    """Do `forces_of_any` for a contact that yields, by Newton's method for the indentation, from that without force.
+def solve_yielding(
+    free: Any, law: Law, before: Any, yields: Yielding, path: Indentations, step: Number, zero: Number
+) -> tuple[Any, Number, Number]:
+    """Do `solve_any` for a contact that yields, by Newton's method for the indentation, from that without force.
 
     Runs with a rigid contact beside it are solved once. It is called, not inlined: rigid contacts do not pay for it.
     """
-    gap, slip, away, w = free
-    law, laws, number, at_rest = friction
-    done = zero
-    normal, tangential, status, jammed, give, beyond = zero, zero, zero, zero, zero, zero
+    gap, own, done = free.gap, free.w.nn, zero
+    touch, give, beyond = without_forces(free, zero), zero, zero
     share = share_of(-gap, path, yields)
-    softer, further = give_of(-gap, path, yields, share, w.nn, step, zero)
+    softer, further = give_of(-gap, path, yields, share, own, step, zero)
     for _ in range(STEPS):
-        one = forces_of_one(
-            gap + further,
-            slip,
-            away,
-            softened(w, softer),
-            law,
-            laws,
-            number,
-            at_rest,
-            before,
-            let_go,
-            step,
-            zero,
-        )
         goes_on = done < 0.5
-        normal, tangential = choose(goes_on, one[0], normal), choose(goes_on, one[1], tangential)
-        status, jammed = choose(goes_on, one[2], status), choose(goes_on, one[3], jammed)
+        found = solve_rigid(about_indentation(free, softer, further), law, before, step, zero)
+        touch = choose_all(goes_on, found, touch)
         give, beyond = choose(goes_on, softer, give), choose(goes_on, further, beyond)
-        reached = -(gap + w.nn * normal - w.nt * tangential)
-        softer, further = give_of(reached, path, yields, share, w.nn, step, zero)
-        done = choose(goes_on, is_settled(reached, normal, softer, further, w.nn, gap, yields), 1.0)
+        reached = -gap_under(free, touch)
+        softer, further = give_of(reached, path, yields, share, own, step, zero)
+        done = choose(goes_on, is_settled(reached, touch.normal, softer, further, own, gap, yields), 1.0)
         if everywhere(done > 0.5):
             break
-    return normal, tangential, status, jammed, give, beyond
-
-
-@pasted
-def forces_of_any_in_space(
-    free: tuple[Any, ...],
-    friction: tuple[int, Array, int],
-    before: BeforeInSpace,
-    let_go: Number,
-    step: Number,
-    yields: Yielding,
-    path: Indentations,
-    zero: Number,
-) -> Numbers:
-    """Do `forces_of_any` for a contact in space, as `solve_in_space`."""
-    if yields_anywhere(yields):
-        return forces_yielding_in_space(free, friction, before, let_go, step, yields, path, zero)
-    gap, slips, strays, w = free
-    law, laws, number = friction
-    one = solve_in_space(gap, slips, strays, w, law, laws, number, before, let_go, step)
-    return one[0], one[1], one[2], one[3], one[4], zero, zero
-
-
-@called
-def forces_yielding_in_space(
-    free: tuple[Any, ...],
-    friction: tuple[int, Array, int],
-    before: BeforeInSpace,
-    let_go: Number,
-    step: Number,
-    yields: Yielding,
-    path: Indentations,
-    zero: Number,
-) -> Numbers:
-    """Do `forces_yielding` for a contact in space."""
-    gap, slips, strays, w = free
-    law, laws, number = friction
-    done = zero
-    normal, first, second, status, jammed, give, beyond = zero, zero, zero, zero, zero, zero, zero
-    share = share_of(-gap, path, yields)
-    softer, further = give_of(-gap, path, yields, share, w.nn, step, zero)
-    for _ in range(STEPS):
-        one = solve_in_space(
-            gap + further, slips, strays, softened_in_space(w, softer), law, laws, number, before, let_go, step
-        )
-        goes_on = done < 0.5
-        normal, first, second = (
-            choose(goes_on, one[0], normal),
-            choose(goes_on, one[1], first),
-            choose(goes_on, one[2], second),
-        )
-        status, jammed = choose(goes_on, one[3], status), choose(goes_on, one[4], jammed)
-        give, beyond = choose(goes_on, softer, give), choose(goes_on, further, beyond)
-        reached = -(gap + w.nn * normal - w.na * first - w.nb * second)
-        softer, further = give_of(reached, path, yields, share, w.nn, step, zero)
-        done = choose(goes_on, is_settled(reached, normal, softer, further, w.nn, gap, yields), 1.0)
-        if everywhere(done > 0.5):
-            break
-    return normal, first, second, status, jammed, give, beyond
+    return touch, give, beyond
 
 
 @inlined

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from .._kernels import layout as at
-from .._kernels.contact_values import Before, Compliance
+from .._kernels.contact_values import Before, Compliance, Free, Law
 from .._kernels.contacts import solve_closed
 from .._kernels.lanes import Runs
 from .._kernels.law_columns import STATIC
 from .._kernels.parts import Contacts, Sizes, Timing
 from .._kernels.slipping import STICKING
-from .._kernels.solves import solve_one_run
+from .._kernels.solves import solve
 from .._kernels.vectors import LANES
 from ..arrays import Array
 from ..lowering.packing import PLAIN, aligned, columns, compliance_in_blocks, room_to_solve, side_by_side
@@ -77,6 +77,7 @@ def _force_of_one(
     away = carried[at.MATERIAL] - carried[at.ANCHOR] if carried[at.STATUS] == STICKING else 0.0
     slips, forces = (at.LAST_SLIP, at.EARLIER_SLIP), (at.LAST_NORMAL, at.LAST_TANGENTIAL)
     before = (at.STATUS, *slips, at.FRICTION_STATE, *forces, at.PAST_RATIO)
-    was, w = Before(*(float(carried[one]) for one in before)), Compliance(*map(float, compliance.ravel()))
-    normal, tangential, _, _ = solve_one_run(gap, slip, float(away), w, int(laws[0][0]), laws[1], 0, was, 0.0, step)
-    return np.array([[normal, tangential]])
+    free = Free(gap, slip, float(away), Compliance(*map(float, compliance.ravel())), 0.0)
+    law = Law(int(laws[0][0]), laws[1], 0, float(laws[1][0, STATIC]))
+    touch = solve(free, law, Before(*(float(carried[one]) for one in before)), step)
+    return np.array([[touch.normal, touch.tangential]])

@@ -8,9 +8,10 @@ import numpy as np
 
 from .._kernels import layout as at
 from .._kernels.contact import SEPARATED, SLIDING, STICKING
+from .._kernels.contact_values import Law, Yielding
 from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
 from .._kernels.law_columns import STATIC
-from .._kernels.pressing import stored_in_one
+from .._kernels.pressing import stored_in
 from .._kernels.slipping_in_space import ratio_of_state, state_after
 from ..arrays import Array
 from ..checks import ArgumentError
@@ -68,8 +69,9 @@ def stored_in_contacts(arrays: Assembly, carried: Array) -> float:
     energy = 0.0
     for one, own in zip(arrays.contacts, carried, strict=True):
         if one.yields is not None:
-            coefficient, exponent, *_ = one.yields.numbers
-            energy += stored_in_one(-own[at.LAST_GAP], -own[at.EARLIER_GAP], coefficient, exponent)
+            stiffness, exponent, damping, rate = one.yields.numbers
+            yields = Yielding(stiffness, exponent, damping, rate, 0.0)
+            energy += stored_in(-own[at.LAST_GAP], -own[at.EARLIER_GAP], yields)
     return energy
 
 
@@ -140,23 +142,23 @@ class _Start:
         ratios, laws = np.full(len(self.speeds), np.nan), self.contacts.laws
         for i, speed in enumerate(self.speeds):
             number, whole = int(self.first[i]), float(self.slip_speeds[i])
-            law = int(self.contacts.codes[number])
+            law = Law(int(self.contacts.codes[number]), laws, number, laws[number, STATIC])
             share = speed / whole if whole else 0.0
             if self.arrays.contacts[number].contact.has_state_vector:
                 pair = slice(number, number + 2)
                 states, velocity = tuple(carried[pair, at.FRICTION_STATE]), tuple(self.speeds[pair])
-                after = state_after(law, laws, number, states, velocity, self.step)
+                after = state_after(law, states, velocity, self.step)
                 middle = tuple(0.5 * (np.array(states) + np.array(after)))
-                ratios[i] = ratio_of_state(law, laws, number, middle, velocity)[i - number]
-            elif not set_valued(law):
+                ratios[i] = ratio_of_state(law, middle, velocity)[i - number]
+            elif not set_valued(law.code):
                 # Signed by the sense of slip, as bristles may be bent either way.
                 sense = -1.0 if share == -1.0 else 1.0
                 state = carried[number, at.FRICTION_STATE]
-                middle = 0.5 * (state + next_state(law, laws, number, state, sense * whole, self.step))
-                found = state_ratio(law, laws, number, middle, sense * whole)
+                middle = 0.5 * (state + next_state(law, state, sense * whole, self.step))
+                found = state_ratio(law, middle, sense * whole)
                 ratios[i] = found * (sense * share if whole else float(number == i))
             elif whole:
-                ratios[i] = share * sliding_ratio(law, laws, number, whole)
+                ratios[i] = share * sliding_ratio(law, whole)
         return ratios
 
     def carried(self, first: Array) -> Array:

@@ -8,6 +8,7 @@ import numpy as np
 
 from .._kernels import friction as marched
 from .._kernels import layout as at
+from .._kernels.contact_values import Law
 from .._kernels.law_columns import CODES, LAW_COLUMNS, NEW_STATE, PARAMETERS, STATIC
 from ..arrays import Array
 from ..checks import ArgumentError
@@ -44,7 +45,7 @@ def _differences(law: FrictionLaw) -> Iterator[tuple[str, str]]:
     if set(given) != set(needed):
         yield f"have the parameters {', '.join(needed)}", ", ".join(given) or "none"
         return
-    numbers = law_of_march(law)[1][None]
+    march = _in_march(law)
     for name, own, marches in (
         ("set_valued", law.set_valued, bool(marched.set_valued(code))),
         ("has_state", law.has_state, not marched.set_valued(code)),
@@ -53,13 +54,13 @@ def _differences(law: FrictionLaw) -> Iterator[tuple[str, str]]:
         if own != marches:
             yield f"have {name} {marches}, as {law.kernel_code} does", repr(own)
     speeds = law.reach * np.logspace(-DECADES_BELOW, DECADES_ABOVE, SPEEDS)
-    ratios = np.array([_ratio(law, code, numbers, speed) for speed in speeds.tolist()])
+    ratios = np.array([_ratio(law, march, speed) for speed in speeds.tolist()])
     yield from _curve(law, speeds, ratios)
-    if law.set_valued and not np.isclose(law.holding, held := numbers[0, STATIC], rtol=EQUAL):
+    if law.set_valued and not np.isclose(law.holding, held := march.at_rest, rtol=EQUAL):
         yield f"have the holding ratio {held:.6g}", f"{law.holding:.6g}"
     yield from _slopes(law, speeds, ratios)
     if law.has_state:
-        yield from _states(law, code, numbers, speeds)
+        yield from _states(law, march, speeds)
 
 
 def law_of_march(law: FrictionLaw) -> tuple[int, Array]:
@@ -71,22 +72,28 @@ def law_of_march(law: FrictionLaw) -> tuple[int, Array]:
     return code, row
 
 
-def _ratio(law: FrictionLaw, code: int, numbers: Array, speed: float) -> float:
+def _in_march(law: FrictionLaw) -> Law:
+    """Return a law as a contact of the march has it."""
+    code, row = law_of_march(law)
+    return Law(code, row[None], 0, float(row[STATIC]))
+
+
+def _ratio(law: FrictionLaw, march: Law, speed: float) -> float:
     """Return the ratio of steady sliding in the march."""
     if not law.has_state:
-        return float(marched.sliding_ratio(code, numbers, 0, speed))
-    return float(marched.state_ratio(code, numbers, 0, _steady_state(law, code, numbers, speed), speed))
+        return float(marched.sliding_ratio(march, speed))
+    return float(marched.state_ratio(march, _steady_state(law, march, speed), speed))
 
 
-def _steady_state(law: FrictionLaw, code: int, numbers: Array, speed: float) -> float:
+def _steady_state(law: FrictionLaw, march: Law, speed: float) -> float:
     """Return the state that the march reaches in sliding, whatever it begins with."""
-    return float(marched.next_state(code, numbers, 0, law.state_in_sliding(speed), speed, FAR / speed))
+    return float(marched.next_state(march, law.state_in_sliding(speed), speed, FAR / speed))
 
 
-def _states(law: FrictionLaw, code: int, numbers: Array, speeds: Array) -> Iterator[tuple[str, str]]:
+def _states(law: FrictionLaw, march: Law, speeds: Array) -> Iterator[tuple[str, str]]:
     """Yield differences of the internal state in steady sliding."""
     for speed in speeds.tolist():
-        own, marches = law.state_in_sliding(speed), _steady_state(law, code, numbers, speed)
+        own, marches = law.state_in_sliding(speed), _steady_state(law, march, speed)
         if not np.isclose(own, marches, rtol=EQUAL, atol=0.0):
             yield f"have the state_in_sliding({speed:.4g}) of {marches:.6g} {law.state_units}", f"{own:.6g}"
             return
