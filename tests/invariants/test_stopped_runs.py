@@ -10,9 +10,10 @@ from physics.cases import SCHEME_NAMES, SCHEMES
 
 import stridula as st
 from stridula._kernels import layout
+from stridula._kernels.ledger import Account, believed
 from stridula.integration import together as together_module
 from stridula.integration.marches import March
-from stridula.integration.stops import CAUSE, ENDED, WHAT, energy_created
+from stridula.integration.stops import CAUSE, ENDED, WHAT
 from stridula.lowering import blocks as blocks_module
 
 BOTH = pytest.mark.parametrize("scheme", SCHEMES, ids=SCHEME_NAMES)
@@ -178,6 +179,13 @@ def damping_that_gives(energies):
     energies[layout.DAMPING_LOSS, 60:] -= 1e-3
 
 
+def created_at(energies, dissipative=True):
+    """Return the first sample at which energy was created, or None."""
+    account = Account(np.zeros(layout.ENERGIES), 0.0, 1.0, 0.0, dissipative, True)
+    sample, ended, _ = believed(energies, 0, energies.shape[1], account)
+    return sample if ended == layout.ENERGY_CREATED else None
+
+
 @pytest.mark.parametrize(
     ("change", "wrong"),
     [
@@ -193,15 +201,15 @@ def test_definition_of_created_energy(change, wrong):
     energies = np.zeros((layout.ENERGIES, 100))
     energies[layout.STORED] = energies[layout.DRIVE_WORK] = np.linspace(0.0, 1.0, 100)
     change(energies)
-    assert energy_created(energies, np.zeros(layout.ENERGIES), 0.0, 1.0, 0.0, True, True) == wrong
+    assert created_at(energies) == wrong
 
 
 def test_friction_of_a_law_with_state_may_give_back_what_it_stored():
     energies = np.zeros((layout.ENERGIES, 100))
     energies[layout.STORED] = energies[layout.DRIVE_WORK] = 1.0
     energies[layout.FRICTION_LOSS, :50] = 1e-3
-    assert energy_created(energies, np.zeros(layout.ENERGIES), 0.0, 1.0, 0.0, True, True) == 50
-    assert energy_created(energies, np.zeros(layout.ENERGIES), 0.0, 1.0, 0.0, False, True) is None
+    assert created_at(energies) == 50
+    assert created_at(energies, dissipative=False) is None
 
 
 def groove(opening, mu=0.0, history=None) -> st.System:

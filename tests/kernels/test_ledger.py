@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stridula._kernels import layout as at
-from stridula._kernels.ledger import CONTACT_TOLERANCE, LEDGER_TOLERANCE, believed, keep_beside
+from stridula._kernels.ledger import CONTACT_TOLERANCE, LEDGER_TOLERANCE, Account, believed, keep_beside
 
 
 def created(energies, before, initial, largest, of_loads, dissipative, damped_alone):
@@ -51,7 +51,7 @@ def test_accepted_samples_are_those_of_plain_numpy(seed):
     bad = int(random.integers(80)) if seed % 3 == 0 else 80
     energies[random.integers(at.ENERGIES), bad:] = np.nan
     expected = created(energies[:, :bad], before, initial, largest, of_loads, *flags)
-    found, ended, met = believed(energies, 0, 80, before, initial, largest, of_loads, *flags)
+    found, ended, met = believed(energies, 0, 80, Account(before, initial, largest, of_loads, *flags))
     if expected is not None:
         assert (found, ended) == (expected, at.ENERGY_CREATED)
     elif bad < 80:

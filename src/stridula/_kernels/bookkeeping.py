@@ -1,17 +1,15 @@
 """Bookkeeping of a contact after a step: shares of its states, anchor, work of its forces, state of its law."""
 
-from typing import Any
-
 from . import layout as at
 from .compiled import inlined
 from .contact import SLIDING, STICKING, closed_share, landed_share, stuck_share
-from .contact_values import Before, Compliance, Free, Moved, Touch
+from .contact_values import Before, Free, Moved, Touch
 from .friction import set_valued
 from .lanes import Array, Number, Numbers, Runs, anywhere, choose, held, hold, magnitude, read
-from .parts import Carried, Contacts, Imposed, Timing
+from .parts import Carried, Contacts, Parts
 from .pressing import stored_in
-from .solves import anchor_after, carried_by, law_of, next_on_way, resting, strayed
-from .yielding import path_of, softened, yields_of
+from .solves import anchor_after, carried_by, law_of, next_on_way, resting
+from .yielding import about_indentation, path_of, yields_of
 
 
 @inlined
@@ -21,49 +19,35 @@ def add(array: Array, row: int, runs: Runs, value: Number) -> None:
 
 
 @inlined
-def share_states(
-    i: int,
-    touch: Touch,
-    moved: Moved,
-    before: Before,
-    carried: Array,
-    sums: Array,
-    w: Compliance,
-    away: Number,
-    law: int,
-    at_rest: Number,
-    runs: Runs,
-) -> Number:
+def share_states(i: int, touch: Touch, free: Free, gap: Number, before: Before, parts: Parts, runs: Runs) -> Number:
     """Divide the last step among the states of contact `i` and count this one; return the closed share of this one."""
-    base, tally = i * at.CARRIED, i * at.SUMS
-    _, _, status, jammed = touch
-    free_gap, free_slip, gap, _ = moved
-    was, last_normal, last_tangential = before.status, before.normal, before.tangential
-    stuck, touched = magnitude(was - STICKING) < 0.5, was > 0.5 * STICKING
-    apart = status < 0.5 * STICKING
+    base, tally, sums, carried = i * at.CARRIED, i * at.SUMS, parts.contacts.sums, parts.state.carried
+    law, w = parts.contacts.codes[i], free.w
+    stuck, touched = magnitude(before.status - STICKING) < 0.5, before.status > 0.5 * STICKING
+    apart = touch.status < 0.5 * STICKING
     closed = held(carried, base + at.CLOSED_SHARE, runs)
-    opened = choose(touched, choose(apart, last_normal, runs.zero), runs.zero) > 0.0
+    opened = choose(touched, choose(apart, before.normal, runs.zero), runs.zero) > 0.0
     if anywhere(opened):
         # A damped contact ceases to press while it is still indented.
         above = choose(gap > 0.0, gap, runs.zero)
-        left = closed - 1.0 + closed_share(choose(opened, last_normal, 1.0), last_tangential, above, w.nn, w.nt)
+        left = closed - 1.0 + closed_share(choose(opened, before.normal, 1.0), before.tangential, above, w)
         closed = choose(opened, choose(left < 0.0, runs.zero, left), closed)
     stayed = choose(stuck, closed, runs.zero)
-    slips = choose(stuck, status, runs.zero) > SLIDING - 0.5
+    slips = choose(stuck, touch.status, runs.zero) > SLIDING - 0.5
     if law == at.COULOMB and anywhere(slips):
-        kept = stuck_share(last_normal, last_tangential, free_gap, free_slip + away, w, at_rest)
+        kept = stuck_share(before.normal, before.tangential, free, law_of(i, parts.contacts, runs).at_rest)
         stayed = choose(slips, kept * stayed, stayed)
     elif law != at.COULOMB and set_valued(law):
         stayed = closed * held(carried, base + at.STUCK_SHARE, runs)
     add(sums, tally + at.STUCK, runs, stayed)
     add(sums, tally + at.SLID, runs, closed - stayed)
-    if not anywhere(status > 0.5 * STICKING):
+    if not anywhere(touch.status > 0.5 * STICKING):
         return runs.zero
     landed = choose(touched, runs.zero, choose(apart, runs.zero, 1.0))
-    closed = choose(touched, 1.0, landed_share(held(carried, base + at.LAST_GAP, runs), free_gap))
-    sticks = magnitude(resting(status) - STICKING) < 0.5
+    closed = choose(touched, 1.0, landed_share(held(carried, base + at.LAST_GAP, runs), free.gap))
+    sticks = magnitude(resting(touch.status) - STICKING) < 0.5
     add(sums, tally + at.TOUCHDOWNS, runs, landed)
-    add(sums, tally + at.JAMS, runs, jammed)
+    add(sums, tally + at.JAMS, runs, touch.jammed)
     add(sums, tally + at.STUCK_STEPS, runs, choose(sticks, 1.0, runs.zero))
     add(sums, tally + at.SLID_STEPS, runs, choose(sticks, runs.zero, choose(apart, runs.zero, 1.0)))
     return choose(apart, runs.zero, closed)
@@ -85,33 +69,21 @@ def centred(motion: Array, n: int, column: int, zero: Number) -> Number:
 
 
 @inlined
-def driven_work(i: int, touch: tuple[Any, ...], motion: Array, n: int, runs: Runs) -> Number:
+def driven_work(i: int, normal: Number, tangential: Number, motion: Array, n: int, runs: Runs) -> Number:
     """Return the work of the motions imposed on contact `i` through its forces in step `n`."""
     column = i * at.MOTIONS * runs.columns + runs.first
     tip = centred(motion, n, column + at.TIP_MOTION * runs.columns, runs.zero)
     track = centred(motion, n, column + at.TRACK_MOTION * runs.columns, runs.zero)
     lift = centred(motion, n, column + at.GAP_MOTION * runs.columns, runs.zero)
-    return touch[1] * (tip - track) - touch[0] * lift
+    return tangential * (tip - track) - normal * lift
 
 
 @inlined
-def next_of(
-    i: int,
-    touch: Touch,
-    moved: Moved,
-    w: Compliance,
-    away: Number,
-    before: Before,
-    contacts: Contacts,
-    step: Number,
-    runs: Runs,
-) -> Numbers:
+def next_of(i: int, touch: Touch, free: Free, before: Before, parts: Parts, runs: Runs) -> Numbers:
     """Return the past part of the ratio of contact `i` for the next step, the state of its law, its share of stick."""
-    if contacts.codes[i] == at.COULOMB:
+    if parts.contacts.codes[i] == at.COULOMB:
         return runs.zero, before.state, runs.zero
-    let_go = held(contacts.now, i * at.IN_STEP + at.LET_GO, runs)
-    free = Free(moved.free_gap, moved.free_slip, away, w, let_go)
-    return next_on_way((touch.normal, touch.status), free, law_of(i, contacts, runs), before, step)
+    return next_on_way((touch.normal, touch.status), free, law_of(i, parts.contacts, runs), before, parts.timing.step)
 
 
 @inlined
@@ -188,48 +160,27 @@ def stored_in_contacts(contacts: Contacts, carried: Array, count: int, runs: Run
 
 
 @inlined
-def keep_books(
-    i: int,
-    w: Compliance,
-    touch: Touch,
-    moved: Moved,
-    contacts: Contacts,
-    state: Carried,
-    imposed: Imposed,
-    timing: Timing,
-    n: int,
-    runs: Runs,
-) -> None:
-    """Do the bookkeeping of contact `i` in step `n`, except for its place.
-
-    `touch` are normal and tangential force, status and whether it jams, `moved` gap and slip without these forces, then
-    with them.
-    """
-    law, carried, sums = contacts.codes[i], state.carried, contacts.sums
-    before = carried_by(carried, i, runs)
+def keep_books(i: int, free: Free, touch: Touch, moved: Moved, parts: Parts, n: int, runs: Runs) -> None:
+    """Do the bookkeeping of contact `i` in step `n`, except for its place; `free` does not tell how it yields."""
+    contacts, state, base = parts.contacts, parts.state, i * at.CARRIED
+    law, carried = contacts.codes[i], state.carried
+    before, stuck = carried_by(carried, i, runs), runs.zero
     store_in(i, moved.gap, contacts, state, runs)
-    give, beyond = (
-        held(contacts.now, i * at.IN_STEP + at.GIVE, runs),
-        held(contacts.now, i * at.IN_STEP + at.BEYOND, runs),
-    )
-    stuck = runs.zero
-    w = softened(w, give)
-    moved = Moved(moved.free_gap + beyond, moved.free_slip, moved.gap, moved.slip)
     if not set_valued(law) or anywhere(touch.status + before.status > 0.5):
-        away = strayed(carried, i, runs)
-        at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, runs)
-        closed = share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, runs)
+        give = held(contacts.now, i * at.IN_STEP + at.GIVE, runs)
+        free = about_indentation(free, give, held(contacts.now, i * at.IN_STEP + at.BEYOND, runs))
+        closed = share_states(i, touch, free, moved.gap, before, parts, runs)
         keep_anchor(i, moved.slip, law, touch.status, before.status, carried, runs)
-        if imposed.motion.shape[0] > 1:
-            driven = driven_work(i, touch, imposed.motion, n, runs)
+        if parts.imposed.motion.shape[0] > 1:
+            driven = driven_work(i, touch.normal, touch.tangential, parts.imposed.motion, n, runs)
             add(state.energies, at.CONTACT_WORK, runs, -driven)
             add(state.energies, at.DRIVE_WORK, runs, driven)
-        past, friction_state, stuck = next_of(i, touch, moved, w, away, before, contacts, timing.step, runs)
-        hold(carried, i * at.CARRIED + at.STUCK_SHARE, runs, stuck)
-        hold(carried, i * at.CARRIED + at.PAST_RATIO, runs, past)
-        hold(carried, i * at.CARRIED + at.FRICTION_STATE, runs, friction_state)
+        past, friction_state, stuck = next_of(i, touch, free, before, parts, runs)
+        hold(carried, base + at.STUCK_SHARE, runs, stuck)
+        hold(carried, base + at.PAST_RATIO, runs, past)
+        hold(carried, base + at.FRICTION_STATE, runs, friction_state)
         lost = keep_forces(i, touch, moved, carried, contacts, closed, runs)
-        keep_tangential(i, touch.tangential, carried, sums, runs)
+        keep_tangential(i, touch.tangential, carried, contacts.sums, runs)
         add(state.energies, at.FRICTION_LOSS, runs, lost)
     keep_motion(i, moved, stuck, before.slip, carried, runs)
 

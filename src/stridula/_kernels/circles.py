@@ -11,7 +11,7 @@ from .block_rows import CONTACTS, POSITION, Q
 from .compiled import inlined
 from .lanes import Array, Number, Pair, Runs, fused, held, hold, load, read, spread, store, total
 from .modes import product, two_products
-from .parts import Carried, Contacts, Imposed, Modes, Paths, Turning
+from .parts import Parts
 from .space import is_second
 from .turning import (
     ADVANCE,
@@ -52,24 +52,14 @@ def product_of(rows: Array, row: int, others: Array, other: int, begin: int, end
 
 
 @inlined
-def go_round(
-    i: int,
-    moved: Pair,
-    modes: Modes,
-    paths: Paths,
-    contacts: Contacts,
-    turning: Turning,
-    state: Carried,
-    imposed: Imposed,
-    n: int,
-    runs: Runs,
-) -> Pair:
+def go_round(i: int, moved: Pair, parts: Parts, n: int, runs: Runs) -> Pair:
     """Advance contact `i` along its circle (steps 2 and 3); return what its body adds to the gap there, and its slip.
 
     `moved` are its abscissa at the end of the step, and the advance of the surface along the circle by turning.
     """
     place, track = moved
-    rows, turns, body = modes.rows, turning.rows, paths.body_of[i]
+    paths, contacts, turning, motion = parts.paths, parts.contacts, parts.turning, parts.imposed.motion
+    rows, turns, body = parts.modes.rows, turning.rows, paths.body_of[i]
     begin, end = turning.spans[body, BEGIN], turning.spans[body, END]
     if not is_second(contacts.codes, i):
         base = i * at.CONTACT_CONSTANTS
@@ -85,9 +75,9 @@ def go_round(
     slip -= product(rows, row + 1, Q, first, begin, runs)
     slip -= product_of(rows, row + 1, turns, PASSED, begin, end, runs)
     before = read(
-        imposed.motion, n - 1 if n > 0 else 0, (i * at.MOTIONS + at.TRACK_MOTION) * runs.columns + runs.first, runs.zero
+        motion, n - 1 if n > 0 else 0, (i * at.MOTIONS + at.TRACK_MOTION) * runs.columns + runs.first, runs.zero
     )
-    slip += (place - held(state.carried, i * at.CARRIED + at.ABSCISSA, runs)) - (track - before)
+    slip += (place - held(parts.state.carried, i * at.CARRIED + at.ABSCISSA, runs)) - (track - before)
     here = i * OF_CONTACT
     hold(turning.contacts, here + RISE, runs, product_of(rows, row, turns, RISEN, begin, end, runs))
     hold(turning.contacts, here + ADVANCE, runs, product_of(rows, row + 1, turns, ADVANCED, begin, end, runs))
@@ -95,14 +85,19 @@ def go_round(
 
 
 @inlined
-def convected(
-    i: int, place: Number, modes: Modes, paths: Paths, contacts: Contacts, turning: Turning, carried: Array, runs: Runs
-) -> Number:
+def convected(i: int, place: Number, parts: Parts, runs: Runs) -> Number:
     """Return the convection work of contact `i`, from the slope of its body along the circle.
 
     It is the change of its rows over the last two steps, times the displacements two steps ago.
     """
-    rows, turns, row, body, value = modes.rows, turning.rows, CONTACTS + 2 * i, paths.body_of[i], spread(0.0)
+    contacts, turning, carried = parts.contacts, parts.turning, parts.state.carried
+    rows, turns, row, body, value = (
+        parts.modes.rows,
+        turning.rows,
+        CONTACTS + 2 * i,
+        parts.paths.body_of[i],
+        spread(0.0),
+    )
     rate = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.ALONG, runs)
     angle = rate * (place - held(carried, i * at.CARRIED + at.ABSCISSA_BEFORE, runs))
     for k in range(turning.spans[body, BEGIN], turning.spans[body, END], 2):

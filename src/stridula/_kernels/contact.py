@@ -198,24 +198,24 @@ def landed_share(gap_before: Number, gap: Number) -> Number:
 
 
 @strict_pasted
-def closed_share(normal: Number, tangential: Number, gap: Number, w_nn: Number, w_nt: Number) -> Number:
+def closed_share(normal: Number, tangential: Number, gap: Number, w: Compliance) -> Number:
     """Return the share of the step before in which a contact that is open now was still closed.
 
     The force is taken straight from `normal` through zero to the force that would hold the contact closed, at the same
     ratio.
     """
-    free = w_nn - tangential / normal * w_nt
-    return normal / (normal + gap / choose(free > 0.0, free, w_nn))
+    clear = w.nn - tangential / normal * w.nt
+    return normal / (normal + gap / choose(clear > 0.0, clear, w.nn))
 
 
 @strict_pasted
-def stuck_share(normal: Number, tangential: Number, gap: Number, slip: Number, w: Compliance, mu: Number) -> Number:
+def stuck_share(normal: Number, tangential: Number, free: Free, mu: Number) -> Number:
     """Return the share of the step before in which a contact that slides now still stuck.
 
     The tangential force is taken straight from `tangential` through the border of the cone to the force that would keep
     it stuck.
     """
-    pressed, needed = sticking_forces(gap, slip, w)
+    pressed, needed = sticking_forces(free.gap, free.slip + free.strayed, free.w)
     sense = choose(needed < 0.0, -1.0, 1.0)
     inside, outside = mu * normal - sense * tangential, sense * needed - mu * pressed
     return choose(outside > 0.0, inside, 1.0) / choose(outside > 0.0, inside + outside, 1.0)

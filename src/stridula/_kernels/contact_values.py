@@ -73,14 +73,32 @@ class Free(NamedTuple):
     let_go: Number
 
 
+class Tried(NamedTuple):
+    """Abscissa, gap and slip of the only contact in a step without its forces [m], and its compliance."""
+
+    place: Number
+    gap: Number
+    slip: Number
+    w: Compliance
+
+
+class Done(NamedTuple):
+    """Work of the only contact in a step, loss to damping [J], and force along its path by the slope of that."""
+
+    work: Number
+    lost: Number
+    slope: Number
+
+
 class FreeInSpace(NamedTuple):
-    """The same along both tangents."""
+    """The same along both tangents, and `guess`, the tangential forces from which their direction is sought."""
 
     gap: Number
     slips: Pair
     strays: Pair
     w: ComplianceInSpace
     let_go: Number
+    guess: Pair
 
 
 class Before(NamedTuple):
@@ -110,7 +128,7 @@ class Before(NamedTuple):
 
 
 class BeforeInSpace(NamedTuple):
-    """The same along both tangents, and `guess`, the tangential forces from which their direction is sought."""
+    """The same along both tangents."""
 
     status: Number
     slip: Pair
@@ -118,7 +136,6 @@ class BeforeInSpace(NamedTuple):
     state: Pair
     normal: Number
     tangential: Pair
-    guess: Pair
     past: Pair
 
 
@@ -169,9 +186,7 @@ class TouchInSpace(NamedTuple):
 
 
 class Moved(NamedTuple):
-    """Gap and slip of a contact without its own forces, then with them [m]."""
+    """Gap of a contact at the end of a step and slip in it, under all forces [m]."""
 
-    free_gap: Number
-    free_slip: Number
     gap: Number
     slip: Number

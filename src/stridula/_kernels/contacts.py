@@ -4,19 +4,19 @@ Numbers of contact `i` of a run lie in rows ``i * count + kind``.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from . import layout as at
 from .block_rows import COMPLIANCE, DISPLACEMENT
 from .compiled import entry, inlined, pasted
 from .contact import SLIDING, STICKING
-from .contact_values import Free
+from .contact_values import Free, Touch, TouchInSpace
 from .direct import solve_states
 from .faces import displace, displace_freely, displace_in_space, own_compliance
-from .lanes import Array, Number, Numbers, Pair, Runs, anywhere, choose, component, everywhere, held, hold, magnitude
+from .lanes import Array, Number, Pair, Runs, anywhere, choose, component, everywhere, held, hold, magnitude
 from .parts import Contacts, Sizes, Timing
 from .solves import carried_by, law_of, strayed
-from .space import carried_in_space, free_of_own, is_second, put_second
+from .space import carried_in_space, free_of_own, is_second, pair_of, put_second
 from .yielding import comes_close, path_of, solve_any, yields_of
 
 # Sweeps before the first direct solve for the forces of the states found, and between direct solves.
@@ -79,22 +79,69 @@ def solve_in_turn(i: int, free: Any, before: Any, contacts: Contacts, carried: A
     return touch
 
 
+class Sweep(NamedTuple):
+    """Result of a sweep over all contacts.
+
+    Attributes
+    ----------
+    change, largest : number
+        Largest change of a force, and the largest force [N].
+    misfit, reach : number
+        Largest gap or slip that a contact still had to undo, and the largest gap that the force of one undoes [m].
+    settled : number
+        Whether no state changed.
+    """
+
+    change: Number
+    largest: Number
+    misfit: Number
+    reach: Number
+    settled: Number
+
+
+@pasted
+def touch_in_plane(i: int, contacts: Contacts, carried: Array, step: Number, runs: Runs) -> Touch:
+    """Solve contact `i` of the plane without its own forces."""
+    now, here, w = contacts.now, i * at.IN_STEP, own_compliance(contacts.faces, i, runs)
+    normal, tangential = held(now, here + at.NORMAL_NOW, runs), held(now, here + at.TANGENTIAL_NOW, runs)
+    gap = component(contacts.faces, 2 * i, DISPLACEMENT, runs) - (w.nn * normal - w.nt * tangential)
+    slip = component(contacts.faces, 2 * i + 1, DISPLACEMENT, runs) - (w.tn * normal - w.tt * tangential)
+    free = Free(gap, slip, strayed(carried, i, runs), w, held(now, here + at.LET_GO, runs))
+    return solve_in_turn(i, free, carried_by(carried, i, runs), contacts, carried, step, runs)
+
+
+@pasted
+def touch_in_space(i: int, contacts: Contacts, carried: Array, step: Number, runs: Runs) -> TouchInSpace:
+    """Solve contact `i` of space without its own forces."""
+    now, here = contacts.now, i * at.IN_STEP
+    normal, pulled = held(now, here + at.NORMAL_NOW, runs), pair_of(now, here + at.TANGENTIAL_NOW, at.IN_STEP, runs)
+    free, before = free_of_own(contacts, carried, i, normal, pulled, runs), carried_in_space(carried, i, runs)
+    return solve_in_turn(i, free, before, contacts, carried, step, runs)
+
+
+@inlined
+def put_touch(i: int, touch: Touch, done: Number, contacts: Contacts, runs: Runs) -> tuple[Number, Number, Number]:
+    """Set forces and status of contact `i` in runs not `done`; return the changes of its forces and of its status."""
+    now, here, goes_on = contacts.now, i * at.IN_STEP, done < 0.5
+    was_normal, was_tangential = held(now, here + at.NORMAL_NOW, runs), held(now, here + at.TANGENTIAL_NOW, runs)
+    was, was_jammed = held(now, here + at.STATUS_NOW, runs), held(now, here + at.JAMMED_NOW, runs)
+    normal, tangential = choose(goes_on, touch.normal, was_normal), choose(goes_on, touch.tangential, was_tangential)
+    status = choose(goes_on, touch.status, was)
+    hold(now, here + at.NORMAL_NOW, runs, normal)
+    hold(now, here + at.TANGENTIAL_NOW, runs, tangential)
+    hold(now, here + at.STATUS_NOW, runs, status)
+    hold(now, here + at.JAMMED_NOW, runs, choose(goes_on, touch.jammed, was_jammed))
+    hold(now, here + at.BROKE, runs, choose(status > SLIDING - 0.5, 1.0, held(now, here + at.BROKE, runs)))
+    return normal - was_normal, tangential - was_tangential, status - was
+
+
 @pasted
 def sweep_once(
     space: bool | None, contacts: Contacts, carried: Array, sizes: Sizes, step: Number, done: Number, runs: Runs
-) -> Numbers:
-    """Solve contacts that may touch in turn, in runs not `done`; return the changes.
+) -> Sweep:
+    """Solve contacts that may touch in turn, in runs not `done`.
 
     Nothing is compiled for contacts with two tangents if `space` is None.
-
-    Returns
-    -------
-    change, largest : float or vector
-        Largest change of a force, and the largest force.
-    misfit, reach : float or vector
-        Largest gap or slip that a contact still had to undo, and the largest gap that the force of one undoes.
-    settled : float or vector
-        Whether no state changed.
     """
     faces, now = contacts.faces, contacts.now
     change, largest, misfit, reach, settled = runs.zero, runs.zero, runs.zero, runs.zero, runs.zero + 1.0
@@ -102,62 +149,35 @@ def sweep_once(
         here = i * at.IN_STEP
         if is_second(contacts.codes, i):
             continue
-        gap = component(faces, 2 * i, DISPLACEMENT, runs)
         may_touch = held(now, here + at.MAY_TOUCH, runs)
-        may_touch = choose(gap < 0.0, 1.0, may_touch)
+        may_touch = choose(component(faces, 2 * i, DISPLACEMENT, runs) < 0.0, 1.0, may_touch)
         if not anywhere(may_touch > 0.5):
             continue
         hold(now, here + at.MAY_TOUCH, runs, may_touch)
-        slip = component(faces, 2 * i + 1, DISPLACEMENT, runs)
-        was_normal, was_tangential = (
-            held(now, here + at.NORMAL_NOW, runs),
-            held(now, here + at.TANGENTIAL_NOW, runs),
-        )
-        was = held(now, here + at.STATUS_NOW, runs)
-        w = own_compliance(faces, i, runs)
-        second, normal, tangential, status, jammed = runs.zero, runs.zero, runs.zero, runs.zero, runs.zero
+        w, more, pulled, turned = own_compliance(faces, i, runs), runs.zero, runs.zero, runs.zero
         in_space = False
         if space is not None:
             in_space = is_second(contacts.codes, i + 1)
             if in_space:
-                guess = was_tangential, held(now, here + at.IN_STEP + at.TANGENTIAL_NOW, runs)
-                before = carried_in_space(carried, i, guess, runs)
-                alone = free_of_own(contacts, carried, i, was_normal, guess, runs)
-                touch = solve_in_turn(i, alone, before, contacts, carried, step, runs)
-                normal, (tangential, second), status, jammed = touch
+                normal, (first, second), status, jammed = touch_in_space(i, contacts, carried, step, runs)
+                more, pulled, turned = put_touch(i, Touch(normal, first, status, jammed), done, contacts, runs)
+                swerved = put_second(contacts, i, runs, done < 0.5, second)
+                displace_in_space(faces, sizes.faces, i, runs, more, pulled, swerved)
+                change = largest_of(change, magnitude(swerved))
+                across = component(faces, 2 * i + 3, COMPLIANCE + 2 * i + 3, runs)
+                misfit = largest_of(misfit, magnitude(across * swerved))
         if not in_space:
-            gap -= w.nn * was_normal - w.nt * was_tangential
-            slip -= w.tn * was_normal - w.tt * was_tangential
-            let_go = held(now, here + at.LET_GO, runs)
-            in_plane = Free(gap, slip, strayed(carried, i, runs), w, let_go)
-            normal, tangential, status, jammed = solve_in_turn(
-                i, in_plane, carried_by(carried, i, runs), contacts, carried, step, runs
-            )
-        goes_on = done < 0.5
-        normal, tangential = choose(goes_on, normal, was_normal), choose(goes_on, tangential, was_tangential)
-        status = choose(goes_on, status, was)
-        hold(now, here + at.NORMAL_NOW, runs, normal)
-        hold(now, here + at.TANGENTIAL_NOW, runs, tangential)
-        hold(now, here + at.STATUS_NOW, runs, status)
-        hold(now, here + at.JAMMED_NOW, runs, choose(goes_on, jammed, held(now, here + at.JAMMED_NOW, runs)))
-        broke = held(now, here + at.BROKE, runs)
-        hold(now, here + at.BROKE, runs, choose(status > SLIDING - 0.5, 1.0, broke))
-        settled = choose(magnitude(status - was) > 0.5, runs.zero, settled)
-        more, pulled = normal - was_normal, tangential - was_tangential
-        if not in_space:
+            touch = touch_in_plane(i, contacts, carried, step, runs)
+            more, pulled, turned = put_touch(i, touch, done, contacts, runs)
             displace(faces, sizes.faces, i, runs, more, pulled)
-        elif space is not None:
-            swerved = put_second(contacts, i, runs, goes_on, normal, second, status)
-            displace_in_space(faces, sizes.faces, i, runs, more, pulled, swerved)
-            change = largest_of(change, magnitude(swerved))
-            across = component(faces, 2 * i + 3, COMPLIANCE + 2 * i + 3, runs)
-            misfit = largest_of(misfit, magnitude(across * swerved))
+        settled = choose(magnitude(turned) > 0.5, runs.zero, settled)
+        normal, tangential = held(now, here + at.NORMAL_NOW, runs), held(now, here + at.TANGENTIAL_NOW, runs)
         change = largest_of(change, largest_of(magnitude(more), magnitude(pulled)))
         largest = largest_of(largest, largest_of(normal, magnitude(tangential)))
         opened, slipped = magnitude(w.nn * more - w.nt * pulled), magnitude(w.tn * more - w.tt * pulled)
         misfit = largest_of(misfit, largest_of(opened, slipped))
         reach = largest_of(reach, w.nn * normal)
-    return change, largest, misfit, reach, settled
+    return Sweep(change, largest, misfit, reach, settled)
 
 
 @inlined

@@ -128,6 +128,8 @@ def lanewise(nothing: Any) -> Callable[[F], F]:
             return lambda *arguments: of_one(*arguments)
 
         either.__doc__ = function.__doc__
+        # As numba's functions have: the card compiles it for one run.
+        either.py_func = function  # type: ignore[attr-defined]
         return either  # type: ignore[return-value]
 
     return declare

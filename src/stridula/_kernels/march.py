@@ -9,13 +9,13 @@ from . import layout as at
 from .block_rows import CONTACTS, SINE
 from .bookkeeping import credit, stored_in_contacts
 from .compiled import entry, pasted
-from .contact_values import Compliance, Touch
+from .contact_values import Compliance, Touch, Tried
 from .coupled import energy_of
 from .lanes import INTEGER, TRUTH, Runs, anywhere, choose, everywhere, hold, magnitude, placed
 from .leaving import end, leave
 from .loads import change_loads, credit_loads, differ
 from .parts import Parts
-from .recording import begin_sample, height_of, keep_probes_at, record_contact, record_energies, remember_probes
+from .recording import begin_sample, height_of, keep_probes, record_contact, record_energies, remember_probes
 from .several import keep_many, touch_many
 from .single import keep_one, touch_one
 from .trying import complete_one, gap_of
@@ -41,14 +41,13 @@ def begin_row(parts: Parts, runs: Runs) -> None:
 @pasted
 def record_row(parts: Parts, sample: int, n: int, runs: Runs) -> None:
     """Record energies and contacts after the steps of a sample."""
-    contacts, paths, timing, state = parts.contacts, parts.paths, parts.timing, parts.state
+    contacts, paths, state = parts.contacts, parts.paths, parts.state
     record_energies(state.energies, parts.records.energies, sample, runs)
     after = n + 1 if parts.imposed.motion.shape[0] > 1 else 0
     for i in range(parts.sizes.contacts):
         height = gap_of(i, contacts.constants, parts.imposed.motion, after, runs)
         height += height_of(parts.modes.rows, i, paths.spans, paths.first_span[i], paths.first_span[i + 1], runs)
-        record, steps = parts.records.contacts, timing.steps_per_sample
-        record_contact(i, contacts.sums, state.carried, height, steps, timing.step, record, sample, runs)
+        record_contact(i, height, parts, sample, runs)
 
 
 @entry
@@ -65,7 +64,7 @@ def march(single: bool | None, several: bool | None, space: bool | None, place: 
     sizes, timing, signals = parts.sizes, parts.timing, parts.imposed.signals
     begin(parts, runs)
     ended, completed = zero, zero
-    touch, free, w = Touch(zero, zero, zero, zero), (zero, zero, zero), Compliance(zero, zero, zero, zero)
+    touch, tried = Touch(zero, zero, zero, zero), Tried(zero, zero, zero, Compliance(zero, zero, zero, zero))
     n, pending, sine, advance = INTEGER(0), TRUTH(False), INTEGER(SINE), zero
     for sample in range(parts.records.energies.shape[0]):
         begin_row(parts, runs)
@@ -73,7 +72,7 @@ def march(single: bool | None, several: bool | None, space: bool | None, place: 
             change_loads(parts, n, runs)
             if single is not None:
                 loop = (touch, pending, sine, advance)
-                free, w, touch, leaves, why = touch_one(parts, n, loop, ended, runs)
+                tried, touch, leaves, why = touch_one(parts, n, loop, ended, runs)
                 sine = 2 - sine
             if several is not None:
                 if space is not None:
@@ -84,18 +83,18 @@ def march(single: bool | None, several: bool | None, space: bool | None, place: 
                 if everywhere(ended > 0.0):
                     break
             if single is not None:
-                advance = keep_one(parts, n, free, w, touch, runs)
+                advance = keep_one(parts, n, tried, touch, runs)
                 following = i + 1 < timing.steps_per_sample
                 pending = following and not differ(signals, n + 1, sizes.loads, runs)
                 if not pending:
                     done = complete_one(parts.modes, parts.paths, touch, sine, runs)
-                    credit(parts.state.energies, done[0], done[1], done[2] * advance, runs)
+                    credit(parts.state.energies, done.work, done.lost, done.slope * advance, runs)
             if several is not None:
                 keep_many(space, parts, n, runs)
                 if space is not None:
                     credit_turning(parts, runs)
             if not pending:
-                keep_probes_at(parts, n, runs)
+                keep_probes(parts, n, runs)
             n += 1
         if everywhere(ended > 0.0):
             break

@@ -10,6 +10,8 @@ the next one (step 1), so that the modes are read once a step (`pass_fixed`, `pa
 step is tried, the displacements of all contacts are summed, and the step is completed under the push of all.
 """
 
+from typing import NamedTuple
+
 from . import layout as at
 from .block_rows import (
     AMPLITUDE,
@@ -85,14 +87,19 @@ def pass_fixed(
     return along, across, works, losses
 
 
-@inlined
-def trace_of(
-    rows: Array, k: int, waves: Array, here: int, number: int, products: int, sine: int, cosines: int, runs: Runs
-) -> float:
-    """Return the displacement of a path for a unit of the modes in block `k`, by the waves in rows from `sine` on.
+class WavesOfBlock(NamedTuple):
+    """Waves of a block of modes on a path: block of those along it, entry of that across it, and their kinds."""
 
-    `here` is the block of the waves along the path, `number` the entry of the wave across it.
-    """
+    along: int
+    across: int
+    products: int
+    cosines: int
+
+
+@inlined
+def trace_of(rows: Array, k: int, waves: Array, of_block: WavesOfBlock, sine: int, runs: Runs) -> float:
+    """Return the displacement of a path for a unit of the modes in block `k`, by the waves in rows from `sine` on."""
+    here, number, products, cosines = of_block
     if not products:
         return load(rows, k, AMPLITUDE, runs) * load(waves, here, sine + cosines, runs)
     trace = (load(rows, k, AMPLITUDE, runs) * load(waves, here, sine + 1 - cosines, runs)) * entry(
@@ -105,10 +112,9 @@ def trace_of(
 
 
 @inlined
-def slope_of(
-    rows: Array, k: int, waves: Array, here: int, number: int, products: int, sine: int, cosines: int, runs: Runs
-) -> float:
+def slope_of(rows: Array, k: int, waves: Array, of_block: WavesOfBlock, sine: int, runs: Runs) -> float:
     """Return the derivative along a path of `trace_of`."""
+    here, number, products, cosines = of_block
     if not products:
         return load(rows, k, SLOPE, runs) * load(waves, here, sine + 1 - cosines, runs)
     slope = (load(rows, k, SLOPE, runs) * load(waves, here, sine + cosines, runs)) * entry(waves, number, sine, runs)
@@ -136,16 +142,16 @@ def pass_waves(
     works, losses = spread(0.0), spread(0.0)
     for k in range(spans[s, at.BEGIN], spans[s, at.END]):
         q, d, kept, stiffness, force = block_at(rows, k, runs)
-        here, number = paths.wave_of[k], paths.sets[0, ZEROTH] + paths.across_of[k]
-        row = trace_of(rows, k, waves, here, number, products, now, cosines, runs)
+        of_block = WavesOfBlock(paths.wave_of[k], paths.sets[0, ZEROTH] + paths.across_of[k], products, cosines)
+        row = trace_of(rows, k, waves, of_block, now, runs)
         if pending:
-            push = pull * trace_of(rows, k, waves, here, number, products, last, cosines, runs)
+            push = pull * trace_of(rows, k, waves, of_block, last, runs)
             increment = fused(kept, d, fused(-stiffness, q, force + push))
             q, both = complete(rows, k, runs, q, d, increment)
             d = increment
             works = fused(push, both, works)
             losses = fused((1.0 - kept) * both, both, losses)
-            slope = slope_of(rows, k, waves, here, number, products, last, cosines, runs)
+            slope = slope_of(rows, k, waves, of_block, last, runs)
             slopes = fused(slope, q, slopes)
         trace = fused(row, q + fused(kept, d, fused(-stiffness, q, force)), trace)
         softness = fused(row, row, softness)
@@ -168,8 +174,8 @@ def set_path_rows(rows: Array, paths: Paths, i: int, s: int, row: int, sine: int
     spans, first, zeroth = paths.spans, paths.sets[i, FIRST], paths.sets[i, ZEROTH]
     products, cosines = spans[s, at.PRODUCTS], spans[s, at.COSINES]
     for k in range(spans[s, at.BEGIN], spans[s, at.END]):
-        here, number = first + paths.wave_of[k], zeroth + paths.across_of[k]
-        store(rows, k, row, runs, -trace_of(rows, k, paths.waves, here, number, products, sine, cosines, runs))
+        of_block = WavesOfBlock(first + paths.wave_of[k], zeroth + paths.across_of[k], products, cosines)
+        store(rows, k, row, runs, -trace_of(rows, k, paths.waves, of_block, sine, runs))
 
 
 @inlined
@@ -179,8 +185,8 @@ def slope_along(rows: Array, paths: Paths, i: int, s: int, sine: int, runs: Runs
     products, cosines = spans[s, at.PRODUCTS], spans[s, at.COSINES]
     slopes = spread(0.0)
     for k in range(spans[s, at.BEGIN], spans[s, at.END]):
-        here, number = first + paths.wave_of[k], zeroth + paths.across_of[k]
-        slope = slope_of(rows, k, paths.waves, here, number, products, sine, cosines, runs)
+        of_block = WavesOfBlock(first + paths.wave_of[k], zeroth + paths.across_of[k], products, cosines)
+        slope = slope_of(rows, k, paths.waves, of_block, sine, runs)
         slopes = fused(slope, load(rows, k, Q, runs), slopes)
     return total(slopes, runs.zero)
 

@@ -6,7 +6,7 @@ from .compiled import inlined, pasted
 from .contact import SLIDING, STICKING
 from .lanes import Array, Number, Runs, choose, held, hold, read, write
 from .modes import product
-from .parts import Imposed, Parts, Probes
+from .parts import Parts
 
 
 @inlined
@@ -17,13 +17,12 @@ def remember_probes(rows: Array, first: int, kinds: Array, spans: Array, last: A
         hold(last, i, runs, product(rows, first + i, seen, spans[i, 0], spans[i, 1], runs))
 
 
-@inlined
-def keep_probes(
-    rows: Array, first: int, probes: Probes, imposed: Imposed, now: Array, count: int, n: int, runs: Runs, raw: Array
-) -> None:
-    """Write the values of the probes at step `n`, which is complete, to a row of `raw`."""
-    kinds, spans, direct, shares, last, passing = probes
-    signals = imposed.signals
+@pasted
+def keep_probes(parts: Parts, n: int, runs: Runs) -> None:
+    """Record the values of the probes at step `n`, which is complete."""
+    sizes, rows, now = parts.sizes, parts.modes.rows, parts.contacts.now
+    kinds, spans, direct, shares, last, passing = parts.probes
+    first, signals = CONTACTS + 2 * sizes.contacts + 2 * sizes.loads, parts.imposed.signals
     for p in range(kinds.size):
         seen = Q if kinds[p] == at.DISPLACEMENT else D
         found = product(rows, first + p, seen, spans[p, 0], spans[p, 1], runs)
@@ -34,15 +33,15 @@ def keep_probes(
             value = (found + passes) + (value + passed)
         elif kinds[p] == at.ACCELERATION:
             value = (found + passes) - (value + passed)
-        for i in range(count):
-            here, share = i * at.IN_STEP, 2 * (p * count + i)
+        for i in range(sizes.contacts):
+            here, share = i * at.IN_STEP, 2 * (p * sizes.contacts + i)
             value += held(shares, share, runs) * held(now, here + at.NORMAL_NOW, runs)
             value += held(shares, share + 1, runs) * held(now, here + at.TANGENTIAL_NOW, runs)
         for j in range(signals.shape[1] // runs.columns):
             column = j * runs.columns + runs.first
             factor = read(signals, n if signals.shape[0] > 1 else 0, column, runs.zero)
             value += read(direct, p, column, runs.zero) * factor
-        write(raw, n, p * runs.columns + runs.first, value)
+        write(parts.records.raw, n, p * runs.columns + runs.first, value)
 
 
 @inlined
@@ -63,18 +62,10 @@ def record_energies(energies: Array, record: Array, sample: int, runs: Runs) -> 
 
 
 @inlined
-def record_contact(
-    i: int,
-    sums: Array,
-    carried: Array,
-    height: Number,
-    steps: int,
-    step: Number,
-    record: Array,
-    sample: int,
-    runs: Runs,
-) -> None:
+def record_contact(i: int, height: Number, parts: Parts, sample: int, runs: Runs) -> None:
     """Write contact `i` to a row of its record: means over the sample, and values at its end."""
+    sums, carried, record = parts.contacts.sums, parts.state.carried, parts.records.contacts
+    steps, step = parts.timing.steps_per_sample, parts.timing.step
     tally, base, share = i * at.SUMS, i * at.CARRIED, 1.0 / steps
     column = i * at.COLUMNS * runs.columns + runs.first
     sticking, sliding = held(sums, tally + at.STUCK, runs), held(sums, tally + at.SLID, runs)
@@ -107,12 +98,3 @@ def height_of(rows: Array, i: int, spans: Array, first: int, end: int, runs: Run
         if spans[s, at.KIND] == at.CONSTANT:
             height += product(rows, CONTACTS + 2 * i, Q, spans[s, at.BEGIN], spans[s, at.END], runs)
     return height
-
-
-@pasted
-def keep_probes_at(parts: Parts, n: int, runs: Runs) -> None:
-    """Record the probes at step `n`, which is complete."""
-    sizes = parts.sizes
-    first, count = CONTACTS + 2 * sizes.contacts + 2 * sizes.loads, sizes.contacts
-    raw, now = parts.records.raw, parts.contacts.now
-    keep_probes(parts.modes.rows, first, parts.probes, parts.imposed, now, count, n, runs, raw)

@@ -18,18 +18,18 @@ from .bookkeeping import (
 from .circles import convected
 from .compiled import inlined, pasted
 from .contact_in_space import next_in_space
-from .contact_values import FreeInSpace, Moved, Touch
+from .contact_values import Free, FreeInSpace, Moved, Touch
 from .contacts import solve_closed
 from .faces import own_compliance
 from .friction import set_valued
 from .lanes import Number, Pair, Runs, anywhere, choose, component, held, hold
 from .leaving import any_beyond_ends
-from .parts import Carried, Contacts, Imposed, Parts, Sizes, Timing
+from .parts import Carried, Contacts, Parts, Sizes
 from .solves import law_of, resting, strayed
 from .space import (
-    along,
     carried_in_space,
     direction,
+    free_along,
     free_in_space,
     is_second,
     on,
@@ -38,7 +38,7 @@ from .space import (
     whole_compliance,
 )
 from .trying import complete_many, place_after, soften, try_many
-from .yielding import comes_close, softened
+from .yielding import about_indentation, comes_close
 
 # Error of the contact forces, relative to the largest, above which the run stops.
 UNBELIEVABLE = 1e-3
@@ -94,81 +94,76 @@ def keep_unsolved(contacts: Contacts, state: Carried, sizes: Sizes, unsolved: Nu
 
 
 @pasted
-def keep_books_in_space(
-    i: int, contacts: Contacts, state: Carried, imposed: Imposed, timing: Timing, n: int, runs: Runs
-) -> None:
+def keep_books_in_space(i: int, parts: Parts, n: int, runs: Runs) -> None:
     """Do the bookkeeping of contact `i` in space: along the direction of its friction, then for each tangent."""
+    contacts, state, motion = parts.contacts, parts.state, parts.imposed.motion
     now, carried, here, base = contacts.now, state.carried, i * at.IN_STEP, i * at.CARRIED
     normal, status = held(now, here + at.NORMAL_NOW, runs), held(now, here + at.STATUS_NOW, runs)
     forces = pair_of(now, here + at.TANGENTIAL_NOW, at.IN_STEP, runs)
     slips = pair_of(now, here + at.NEW_SLIP, at.IN_STEP, runs)
-    free = pair_of(now, here + at.FREE_SLIP, at.IN_STEP, runs)
-    carried_on = carried_in_space(carried, i, forces, runs)
+    carried_on = carried_in_space(carried, i, runs)
     way = direction(forces, carried_on.tangential)
     before = past_along(carried_on, way)
-    law = contacts.codes[i]
-    store_in(i, held(now, here + at.NEW_GAP, runs), contacts, state, runs)
+    law, gap = contacts.codes[i], held(now, here + at.NEW_GAP, runs)
+    store_in(i, gap, contacts, state, runs)
     stuck = runs.zero
     if not set_valued(law) or anywhere(status + before.status > 0.5):
-        give, beyond = held(now, here + at.GIVE, runs), held(now, here + at.BEYOND, runs)
-        moved = Moved(
-            held(now, here + at.FREE_GAP, runs) + beyond,
-            on(free, way),
-            held(now, here + at.NEW_GAP, runs),
-            on(slips, way),
+        free = about_indentation(
+            FreeInSpace(
+                held(now, here + at.FREE_GAP, runs),
+                pair_of(now, here + at.FREE_SLIP, at.IN_STEP, runs),
+                (strayed(carried, i, runs), strayed(carried, i + 1, runs)),
+                whole_compliance(contacts.faces, i, runs),
+                held(now, here + at.LET_GO, runs),
+                forces,
+            ),
+            held(now, here + at.GIVE, runs),
+            held(now, here + at.BEYOND, runs),
         )
         touch = Touch(normal, on(forces, way), status, held(now, here + at.JAMMED_NOW, runs))
-        whole = softened(whole_compliance(contacts.faces, i, runs), give)
-        w = along(whole, way)
-        strays = strayed(carried, i, runs), strayed(carried, i + 1, runs)
-        at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, runs)
-        away = on(strays, way)
-        closed = share_states(i, touch, moved, before, carried, contacts.sums, w, away, law, at_rest, runs)
+        closed = share_states(i, touch, free_along(free, way), gap, before, parts, runs)
         for k in range(2):
             keep_anchor(i + k, slips[k], law, status, before.status, carried, runs)
-        if imposed.motion.shape[0] > 1:
-            pushes = (normal, forces[0]), (runs.zero, forces[1])
-            driven = driven_work(i, pushes[0], imposed.motion, n, runs)
-            driven += driven_work(i + 1, pushes[1], imposed.motion, n, runs)
+        if motion.shape[0] > 1:
+            driven = driven_work(i, normal, forces[0], motion, n, runs)
+            driven += driven_work(i + 1, runs.zero, forces[1], motion, n, runs)
             add(state.energies, at.CONTACT_WORK, runs, -driven)
             add(state.energies, at.DRIVE_WORK, runs, driven)
-        alone = FreeInSpace(moved.free_gap, free, strays, whole, held(now, here + at.LET_GO, runs))
-        past, states, stuck = next_in_space((normal, status), alone, law_of(i, contacts, runs), carried_on, timing.step)
+        of_law = law_of(i, contacts, runs)
+        past, states, stuck = next_in_space((normal, status), free, of_law, carried_on, parts.timing.step)
         hold(carried, base + at.STUCK_SHARE, runs, stuck)
         for k in range(2):
             hold(carried, base + k * at.CARRIED + at.PAST_RATIO, runs, past[k])
             hold(carried, base + k * at.CARRIED + at.FRICTION_STATE, runs, states[k])
-        lost = keep_forces(i, touch, moved, carried, contacts, closed, runs)
+        lost = keep_forces(i, touch, Moved(gap, on(slips, way)), carried, contacts, closed, runs)
         add(state.energies, at.FRICTION_LOSS, runs, lost)
         for k in range(2):
             keep_tangential(i + k, forces[k], carried, contacts.sums, runs)
         hold(carried, base + at.CARRIED + at.STATUS, runs, resting(status))
         hold(carried, base + at.CARRIED + at.LAST_NORMAL, runs, normal)
-    gap = held(now, here + at.NEW_GAP, runs)
     for k in range(2):
-        keep_motion(i + k, Moved(gap, gap, gap, slips[k]), stuck, carried_on.slip[k], carried, runs)
+        keep_motion(i + k, Moved(gap, slips[k]), stuck, carried_on.slip[k], carried, runs)
 
 
 @pasted
-def keep_books_of(
-    i: int, contacts: Contacts, state: Carried, imposed: Imposed, timing: Timing, n: int, runs: Runs
-) -> None:
+def keep_books_of(i: int, parts: Parts, n: int, runs: Runs) -> None:
     """Do the bookkeeping of contact `i` among several."""
-    now, here = contacts.now, i * at.IN_STEP
+    now, here = parts.contacts.now, i * at.IN_STEP
     touch = Touch(
         held(now, here + at.NORMAL_NOW, runs),
         held(now, here + at.TANGENTIAL_NOW, runs),
         held(now, here + at.STATUS_NOW, runs),
         held(now, here + at.JAMMED_NOW, runs),
     )
-    moved = Moved(
+    free = Free(
         held(now, here + at.FREE_GAP, runs),
         held(now, here + at.FREE_SLIP, runs),
-        held(now, here + at.NEW_GAP, runs),
-        held(now, here + at.NEW_SLIP, runs),
+        strayed(parts.state.carried, i, runs),
+        own_compliance(parts.contacts.faces, i, runs),
+        held(now, here + at.LET_GO, runs),
     )
-    w = own_compliance(contacts.faces, i, runs)
-    keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, runs)
+    moved = Moved(held(now, here + at.NEW_GAP, runs), held(now, here + at.NEW_SLIP, runs))
+    keep_books(i, free, touch, moved, parts, n, runs)
 
 
 @pasted
@@ -199,13 +194,13 @@ def keep_many(space: bool | None, parts: Parts, n: int, runs: Runs) -> None:
     for i in range(parts.sizes.contacts):
         in_space = is_second(contacts.codes, i + 1)
         if space is not None and in_space:
-            keep_books_in_space(i, contacts, state, imposed, parts.timing, n, runs)
+            keep_books_in_space(i, parts, n, runs)
         if not (in_space or is_second(contacts.codes, i)):
-            keep_books_of(i, contacts, state, imposed, parts.timing, n, runs)
-        place, slope = place_after(i, parts.modes, parts.paths, contacts, state, imposed, after, runs)
+            keep_books_of(i, parts, n, runs)
+        place, slope = place_after(i, parts, after, runs)
         goes_round = parts.sizes.circles and parts.paths.body_of[i] >= 0
         if space is not None and goes_round and not is_second(contacts.codes, i):
-            work = convected(i, place, parts.modes, parts.paths, contacts, parts.turning, state.carried, runs)
+            work = convected(i, place, parts, runs)
             add(state.energies, at.CONVECTION_WORK, runs, work)
         way = keep_place(i, state.carried, place, runs)
         add(state.energies, at.CONVECTION_WORK, runs, slope * way)

@@ -66,7 +66,7 @@ def whole_compliance(faces: Array, i: int, runs: Runs) -> ComplianceInSpace:
     )
 
 
-@inlined
+@strict_pasted
 def along(w: ComplianceInSpace, way: Pair) -> Compliance:
     """Return the compliance of a contact in space along a direction of its tangent plane."""
     c, s = way
@@ -142,6 +142,12 @@ def on(vector: Pair, way: Pair) -> Number:
 
 
 @strict_pasted
+def free_along(free: FreeInSpace, way: Pair) -> Free:
+    """Return the motion of a contact in space without its forces, along a direction."""
+    return Free(free.gap, on(free.slips, way), on(free.strays, way), along(free.w, way), free.let_go)
+
+
+@strict_pasted
 def past_along(before: BeforeInSpace, way: Pair) -> Before:
     """Return what a contact in space carries, along a direction."""
     return Before(
@@ -161,8 +167,7 @@ def solve_along(way: Pair, free: FreeInSpace, law: Law, before: BeforeInSpace, s
     status, slip, earlier, state, normal, tangential, past = past_along(before, way)
     # When it is late, no reversal within the step (5d) is considered.
     was = Before(status if free.let_go == 0.0 else 0.0, slip, earlier, state, normal, tangential, past)
-    in_plane = Free(free.gap, on(free.slips, way), on(free.strays, way), along(free.w, way), free.let_go)
-    return solve(in_plane, law, was, step)
+    return solve(free_along(free, way), law, was, step)
 
 
 @strict
@@ -222,7 +227,7 @@ def solve_in_space(free: FreeInSpace, law: Law, before: BeforeInSpace, step: Num
     if law.code != at.COULOMB:
         return slide_on_its_way(free, law, before, step)
     first, second, held = sticking_direction(gap, slips[0] + strays[0], slips[1] + strays[1], w)
-    mu, was, last, guess = law.table[law.row, STATIC], before.status, before.slip, before.guess
+    mu, was, last, guess = law.table[law.row, STATIC], before.status, before.slip, free.guess
     may_hold = held <= mu or mu == 0.0
     if not may_hold:
         strength = math.hypot(guess[0], guess[1])
@@ -300,7 +305,7 @@ def searched(
 
 
 @inlined
-def carried_in_space(carried: Array, i: int, guess: Pair, runs: Runs) -> BeforeInSpace:
+def carried_in_space(carried: Array, i: int, runs: Runs) -> BeforeInSpace:
     """Return what a contact in space carries, along both tangents; see `carried_by`.
 
     Only bristles have a state along the second tangent.
@@ -313,7 +318,6 @@ def carried_in_space(carried: Array, i: int, guess: Pair, runs: Runs) -> BeforeI
         (first.state, second.state),
         first.normal,
         (first.tangential, second.tangential),
-        guess,
         (first.past, second.past),
     )
 
@@ -326,21 +330,19 @@ def free_of_own(contacts: Contacts, carried: Array, i: int, normal: Number, pull
     slip = component(faces, 2 * i + 1, DISPLACEMENT, runs) - (w.an * normal - w.aa * first - w.ab * second)
     swerve = component(faces, 2 * i + 3, DISPLACEMENT, runs) - (w.bn * normal - w.ba * first - w.bb * second)
     strays = strayed(carried, i, runs), strayed(carried, i + 1, runs)
-    return FreeInSpace(gap, (slip, swerve), strays, w, held(contacts.now, i * at.IN_STEP + at.LET_GO, runs))
+    return FreeInSpace(gap, (slip, swerve), strays, w, held(contacts.now, i * at.IN_STEP + at.LET_GO, runs), pulled)
 
 
 @inlined
-def put_second(
-    contacts: Contacts, i: int, runs: Runs, goes_on: bool, normal: Number, second: Number, status: Number
-) -> Number:
+def put_second(contacts: Contacts, i: int, runs: Runs, goes_on: bool, second: Number) -> Number:
     """Set the force along the second tangent of contact `i`; return its change."""
-    now, here = contacts.now, (i + 1) * at.IN_STEP
-    was = held(now, here + at.TANGENTIAL_NOW, runs)
+    now, here, there = contacts.now, i * at.IN_STEP, (i + 1) * at.IN_STEP
+    was = held(now, there + at.TANGENTIAL_NOW, runs)
     second = choose(goes_on, second, was)
-    hold(now, here + at.TANGENTIAL_NOW, runs, second)
+    hold(now, there + at.TANGENTIAL_NOW, runs, second)
     # The pair without a normal repeats force and status of its contact, so that it is carried and shared likewise.
-    hold(now, here + at.NORMAL_NOW, runs, normal)
-    hold(now, here + at.STATUS_NOW, runs, status)
+    hold(now, there + at.NORMAL_NOW, runs, held(now, here + at.NORMAL_NOW, runs))
+    hold(now, there + at.STATUS_NOW, runs, held(now, here + at.STATUS_NOW, runs))
     return second - was
 
 

@@ -1,15 +1,13 @@
 """Trial and completion of steps of the modes (1 to 4, 6): with one contact in one pass, with several in three."""
 
-from typing import Any
-
 from . import layout as at
 from .block_rows import CONTACTS, POSITION, SINE, Q
 from .circles import go_round
 from .compiled import inlined, pasted
 from .compliance import set_compliance, set_compliance_of_coupled
-from .contact_values import Touch
+from .contact_values import Compliance, Done, Touch, Tried
 from .coupled import complete_coupled, try_coupled
-from .lanes import TRUTH, Array, Number, Numbers, Pair, Runs, anywhere, choose, fused, held, hold, read, total
+from .lanes import TRUTH, Array, Number, Pair, Runs, anywhere, choose, fused, held, hold, read, total
 from .modes import (
     add_push,
     clear_push,
@@ -22,7 +20,7 @@ from .modes import (
     try_all,
     two_products,
 )
-from .parts import Carried, Contacts, Imposed, Modes, Parts, Paths, Sizes
+from .parts import Contacts, Modes, Parts, Paths, Sizes
 from .waves import set_waves
 
 
@@ -61,38 +59,21 @@ def put_free(i: int, now: Array, place: Number, gap: Number, slip: Number, runs:
 
 
 @inlined
-def try_one(
-    modes: Modes,
-    paths: Paths,
-    contacts: Contacts,
-    state: Carried,
-    imposed: Imposed,
-    n: int,
-    touch: Touch,
-    pending: bool,
-    sine: int,
-    runs: Runs,
-) -> tuple[Any, ...]:
+def try_one(parts: Parts, n: int, touch: Touch, pending: bool, sine: int, runs: Runs) -> tuple[Tried, Done]:
     """Complete a pending step of a single contact (step 6) and try the next (steps 1 to 4), in one pass over the modes.
 
-    Returns
-    -------
-    free : tuple of float or vector
-        Abscissa, gap and slip of the contact without its forces.
-    w_nn, w_tt : float or vector
-        Compliances of the contact at its new place.
-    done : tuple of float or vector
-        Work of the contact, loss to damping and force along the path by its slope, in the step completed.
+    Returns the contact without its forces, and the energies of the step completed.
     """
+    modes, paths, contacts, motion = parts.modes, parts.paths, parts.contacts, parts.imposed.motion
     rows, spans = modes.rows, paths.spans
     normal, tangential = touch.normal, touch.tangential
     # Step 6 of the last step, step 1 of this one.
     along, across, works, losses = pass_fixed(
         rows, spans[0, at.BEGIN], spans[0, at.END], runs, pending, normal, tangential
     )
-    place, track = place_of(0, contacts.constants, imposed.motion, n, total(along, runs.zero), runs)
-    gap = gap_of(0, contacts.constants, imposed.motion, n, runs) + total(across, runs.zero)
-    slip = place - track - held(state.carried, at.MATERIAL, runs)
+    place, track = place_of(0, contacts.constants, motion, n, total(along, runs.zero), runs)
+    gap = gap_of(0, contacts.constants, motion, n, runs) + total(across, runs.zero)
+    slip = place - track - held(parts.state.carried, at.MATERIAL, runs)
     w_nn, w_tt = held(contacts.fixed, 0, runs), held(contacts.fixed, 2, runs)
     slope = runs.zero
     if paths.first_span[1] > 1:
@@ -112,12 +93,14 @@ def try_one(
                 slip -= total(trace, runs.zero)
                 w_tt += total(softness, runs.zero)
                 slope -= tangential * total(slopes, runs.zero)
-    return (place, gap, slip), w_nn, w_tt, (0.5 * total(works, runs.zero), 0.25 * total(losses, runs.zero), slope)
+    w_nt = held(contacts.fixed, 1, runs)
+    tried = Tried(place, gap, slip, Compliance(w_nn, w_nt, w_nt, w_tt))
+    return tried, Done(0.5 * total(works, runs.zero), 0.25 * total(losses, runs.zero), slope)
 
 
 @inlined
-def complete_one(modes: Modes, paths: Paths, touch: Touch, sine: int, runs: Runs) -> Numbers:
-    """Complete a step of a single contact without trying the next (step 6); return `done` as in `try_one`."""
+def complete_one(modes: Modes, paths: Paths, touch: Touch, sine: int, runs: Runs) -> Done:
+    """Complete a step of a single contact without trying the next (step 6)."""
     rows, spans = modes.rows, paths.spans
     normal, tangential = touch.normal, touch.tangential
     pending = TRUTH(True)
@@ -129,14 +112,14 @@ def complete_one(modes: Modes, paths: Paths, touch: Touch, sine: int, runs: Runs
         _, _, slopes, work, loss = pass_waves(modes, paths, s, runs, pending, pull, sine, sine)
         works, losses = works + work, losses + loss
         slope += normal * total(slopes, runs.zero) if upright else -tangential * total(slopes, runs.zero)
-    return 0.5 * total(works, runs.zero), 0.25 * total(losses, runs.zero), slope
+    return Done(0.5 * total(works, runs.zero), 0.25 * total(losses, runs.zero), slope)
 
 
 @inlined
 def try_many(space: bool | None, parts: Parts, n: int, ended: Number, runs: Runs) -> None:
     """Try a step of all modes, and set place, gap and slip of each contact without contact forces (steps 1 to 3)."""
     sizes, modes, paths, contacts = parts.sizes, parts.modes, parts.paths, parts.contacts
-    turning, state, imposed = parts.turning, parts.state, parts.imposed
+    state, imposed = parts.state, parts.imposed
     rows, spans, now = modes.rows, paths.spans, contacts.now
     # Step 1.
     places = sizes.coupled * sizes.per_block
@@ -164,7 +147,7 @@ def try_many(space: bool | None, parts: Parts, n: int, ended: Number, runs: Runs
                     gap += moved if upright else runs.zero
                     slip += runs.zero if upright else moved
         elif space is not None and sizes.circles and paths.body_of[i] >= 0:
-            rise, slip = go_round(i, (place, track), modes, paths, contacts, turning, state, imposed, n, runs)
+            rise, slip = go_round(i, (place, track), parts, n, runs)
             gap += rise
         put_free(i, now, place, choose(ended > 0.0, runs.zero, gap), slip, runs)
 
@@ -200,16 +183,15 @@ def complete_many(modes: Modes, paths: Paths, contacts: Contacts, sizes: Sizes, 
 
 
 @inlined
-def place_after(
-    i: int, modes: Modes, paths: Paths, contacts: Contacts, state: Carried, imposed: Imposed, n: int, runs: Runs
-) -> Pair:
+def place_after(i: int, parts: Parts, n: int, runs: Runs) -> Pair:
     """Return the abscissa of contact `i` after the step, and the force along the path due to its slope."""
-    rows, spans, here = modes.rows, paths.spans, i * at.IN_STEP
+    paths, contacts, motion = parts.paths, parts.contacts, parts.imposed.motion
+    rows, spans, here = parts.modes.rows, paths.spans, i * at.IN_STEP
     along, slope = runs.zero, runs.zero
     if paths.path_of[i] < 0 and paths.body_of[i] < 0:
         # The track of such a contact moves only as imposed.
-        track = read(imposed.motion, n, (i * at.MOTIONS + at.TRACK_MOTION) * runs.columns + runs.first, runs.zero)
-        return held(state.carried, i * at.CARRIED + at.MATERIAL, runs) + track, slope
+        track = read(motion, n, (i * at.MOTIONS + at.TRACK_MOTION) * runs.columns + runs.first, runs.zero)
+        return held(parts.state.carried, i * at.CARRIED + at.MATERIAL, runs) + track, slope
     for s in range(paths.first_span[i], paths.first_span[i + 1]):
         kind, begin, end = spans[s, at.KIND], spans[s, at.BEGIN], spans[s, at.END]
         if kind == at.CONSTANT:
@@ -222,5 +204,5 @@ def place_after(
             slope += held(contacts.now, here + at.NORMAL_NOW, runs) * found
         else:
             slope -= held(contacts.now, here + at.TANGENTIAL_NOW, runs) * found
-    place, _ = place_of(i, contacts.constants, imposed.motion, n, along, runs)
+    place, _ = place_of(i, contacts.constants, motion, n, along, runs)
     return place, slope

@@ -1,9 +1,9 @@
 """Step 5 for contacts with a stiffness: a force that grows with the indentation replaces the unilateral constraint."""
 
-from typing import Any, TypeVar
+from typing import Any
 
 from . import layout as at
-from .compiled import called, inlined, overloaded, pasted
+from .compiled import called, inlined, pasted
 from .contact_values import (
     Compliance,
     ComplianceInSpace,
@@ -21,8 +21,8 @@ from .pressing import press, share_of
 from .solves import solve_in_plane
 from .space import solve_in_space
 
-W = TypeVar("W", Compliance, ComplianceInSpace)
-F = TypeVar("F", Free, FreeInSpace)
+# Tells the types apart while compiling: branches for the other are left out, unless the function is pasted.
+IN_PLANE = len(Free._fields)
 
 # Smallest slope of the force, times the compliance of the bodies: where the force falls or is flat, Newton's method
 # takes this slope, which only costs it a few more steps.
@@ -64,72 +64,39 @@ def comes_close(i: int, gap: Number, constants: Array, carried: Array, runs: Run
     return choose(gap < 0.0, 1.0, choose(was > 0.0, 1.0, runs.zero))
 
 
-def softened(w: W, give: Number) -> W:
-    """Return a compliance of the plane or of space with an additional one of the normal."""
-    return w._replace(nn=w.nn + give)
+@inlined
+def about_indentation(free: Any, give: Number, beyond: Number) -> Any:
+    """Return a contact of the plane or of space that yields linearly about an indentation as a rigid one."""
+    gap, w, let_go = free.gap + beyond, free.w, free.let_go
+    if len(free) == IN_PLANE:
+        return Free(gap, free.slip, free.strayed, Compliance(w.nn + give, w.nt, w.tn, w.tt), let_go)
+    w = ComplianceInSpace(w.nn + give, w.na, w.nb, w.an, w.aa, w.ab, w.bn, w.ba, w.bb)
+    return FreeInSpace(gap, free.slips, free.strays, w, let_go, free.guess)
 
 
-def about_indentation(free: F, give: Number, beyond: Number) -> F:
-    """Return a contact that yields linearly about an indentation as a rigid one."""
-    return free._replace(gap=free.gap + beyond, w=softened(free.w, give))
-
-
-def without_forces(free: Any, zero: Number) -> Any:
-    """Return a contact of the plane or of space without forces."""
-    return Touch(zero, zero, zero, zero) if isinstance(free, Free) else TouchInSpace(zero, (zero, zero), zero, zero)
-
-
-@overloaded(softened)
-def _softened(w: Any, give: Any) -> Any:
-    make = w.instance_class
-    return lambda w, give: make(w.nn + give, *w[1:])
-
-
-@overloaded(about_indentation)
-def _about_indentation(free: Any, give: Any, beyond: Any) -> Any:
-    make = free.instance_class
-    return lambda free, give, beyond: make(free.gap + beyond, *free[1:3], softened(free.w, give), free.let_go)
-
-
-@overloaded(without_forces)
-def _without_forces(free: Any, zero: Any) -> Any:
-    if free.instance_class is Free:
-        return lambda free, zero: Touch(zero, zero, zero, zero)
-    return lambda free, zero: TouchInSpace(zero, (zero, zero), zero, zero)
-
-
+@inlined
 def gap_under(free: Any, touch: Any) -> Number:
     """Return the gap of a contact of the plane or of space under its own forces."""
-    pressed = free.gap + free.w.nn * touch.normal
-    if isinstance(free, Free):
-        return pressed - free.w.nt * touch.tangential
-    return pressed - free.w.na * touch.tangential[0] - free.w.nb * touch.tangential[1]
+    pressed, w = free.gap + free.w.nn * touch.normal, free.w
+    if len(free) == IN_PLANE:
+        return pressed - w.nt * touch.tangential
+    return pressed - w.na * touch.tangential[0] - w.nb * touch.tangential[1]
 
 
+@inlined
 def solve_rigid(free: Any, law: Law, before: Any, step: Number, zero: Number) -> Any:
     """Return the contact of the plane or of space with the compliance given."""
-    if isinstance(free, Free):
+    if len(free) == IN_PLANE:
         return solve_in_plane(free, law, before, step, zero)
     return solve_in_space(free, law, before, step)
 
 
-@overloaded(gap_under)
-def _gap_under(free: Any, touch: Any) -> Any:
-    if free.instance_class is Free:
-        return lambda free, touch: free.gap + free.w.nn * touch.normal - free.w.nt * touch.tangential
-
-    def in_space(free: Any, touch: Any) -> Any:
-        first, second = touch.tangential
-        return free.gap + free.w.nn * touch.normal - free.w.na * first - free.w.nb * second
-
-    return in_space
-
-
-@overloaded(solve_rigid)
-def _solve_rigid(free: Any, law: Any, before: Any, step: Any, zero: Any) -> Any:
-    if free.instance_class is Free:
-        return lambda free, law, before, step, zero: solve_in_plane(free, law, before, step, zero)
-    return lambda free, law, before, step, zero: solve_in_space(free, law, before, step)
+@inlined
+def without_forces(free: Any, zero: Number) -> Any:
+    """Return a contact of the plane or of space without forces."""
+    if len(free) == IN_PLANE:
+        return Touch(zero, zero, zero, zero)
+    return TouchInSpace(zero, (zero, zero), zero, zero)
 
 
 @inlined

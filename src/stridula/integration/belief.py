@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .._kernels import layout as at
-from .._kernels.ledger import believed, keep_beside
+from .._kernels.ledger import Account, believed, keep_beside
 from ..arrays import Array
 from ..lowering import Assembly
 from ..lowering.blocks import Blocks
@@ -71,12 +71,14 @@ class Belief:
             kept,
             first,
             samples,
-            self.last_energies,
-            self.initial_energy,
-            self.largest_energy,
-            self.energy_of_loads,
-            self.dissipative,
-            self.damped_alone,
+            Account(
+                self.last_energies,
+                self.initial_energy,
+                self.largest_energy,
+                self.energy_of_loads,
+                self.dissipative,
+                self.damped_alone,
+            ),
         )
         if ended == at.ENERGY_CREATED:
             return completed, ended

@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 
 from .._kernels import layout as at
-from .._kernels.ledger import believed
 from ..arrays import Array
 from ..checks import listed
 from ..lowering import Assembly
@@ -90,39 +89,3 @@ def rank_words(arrays: Assembly, blocks: Blocks, state: State) -> str:
     found = f"their compliance has rank {rank} of {len(sizes)} and condition {condition}"
     rigid = any(one.contact.surface and one.contact.yields is None for one in (arrays.contacts[i] for i in closed))
     return f"{found}; a rigid surface of so many points needs a contact stiffness" if rigid else found
-
-
-def energy_created(
-    energies: Array,
-    before: Array,
-    initial: float,
-    largest: float,
-    of_loads: float,
-    dissipative: bool,
-    damped_alone: bool,
-) -> int | None:
-    """Return the first sample at which energy was created, or None.
-
-    The ledger must close, the stored energy must stay above zero, and the contacts must dissipate energy in total;
-    friction without internal state and the damping of uncoupled modes must do so at every step.
-
-    Parameters
-    ----------
-    energies : ndarray, shape (energies, samples)
-        Energies of a chunk.
-    before : ndarray, shape (energies,)
-        Energies at the sample before it.
-    initial : float
-        Stored energy at the start [J].
-    largest : float
-        Largest energy before the chunk [J].
-    of_loads : float
-        Energy that the loads give to modes at rest in one step [J]: less is negligible.
-    dissipative : bool
-        Whether friction must dissipate energy at every step.
-    damped_alone : bool
-        Whether damping is uncoupled, so that it must also dissipate energy at every step.
-    """
-    rows = np.ascontiguousarray(energies, dtype=float)
-    wrong, ended, _ = believed(rows, 0, rows.shape[1], before, initial, largest, of_loads, dissipative, damped_alone)
-    return wrong if ended == at.ENERGY_CREATED else None
