@@ -31,18 +31,22 @@ from itertools import islice
 from math import radians
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
 import stridula as st
 from ratios import REPEATS, SHORT, Ratio, arguments, must_agree, show, sized
+from stridula._kernels.parts import Imposed as ImposedOnRuns
+from stridula._kernels.parts import Parts, Records
 from stridula._kernels.vectors import LANES
 from stridula.integration.cuda_march import CudaMarch, require_cuda
 from stridula.integration.marches import Imposed, March, imposed_on
 from stridula.integration.start import state_at_start
 from stridula.lowering import assemble
 from stridula.lowering.blocks import Blocks, blocks_of
-from systems import FORCES, TOLERANCE, Case, squeal
+from stridula.records.state import State
+from systems import FORCES, TOLERANCE, Case, pad, squeal
 
 TITLE = "runs per second on a GPU over those on all cores"
 DURATION, SAMPLE_RATE = sized((1.0, 100.0), (1e-3, 1e4))
@@ -58,7 +62,8 @@ RUNS_AT_A_TIME = 100_000
 # Units of double precision in a multiprocessor, by compute capability (CUDA programming guide, arithmetic throughput).
 UNITS = {(6, 0): 32, (7, 0): 32, (8, 0): 32, (9, 0): 64, (10, 0): 64, (6, 1): 4, (7, 5): 2, (8, 6): 2, (8, 9): 2}
 REGISTERS, WARP, MOST_WARPS = 65_536, 32, 64
-DRY = (9, 0)
+# Compute capability for which a dry run compiles, and its time step [s].
+DRY, STEP = (9, 0), 1e-6
 
 
 @dataclass(frozen=True)
@@ -194,8 +199,6 @@ def measure(at: Timing) -> None:
     """Print runs per second over the number of runs and the threads in a block."""
     from numba import cuda
 
-    from stridula._kernels.cuda import march_each
-
     device = cuda.get_current_device()
     name = device.name.decode() if isinstance(device.name, bytes) else device.name
     print(
@@ -217,7 +220,8 @@ def measure(at: Timing) -> None:
             break
         packed = time.perf_counter() - began
         go(march.copy(), some, 1)
-        (registers,) = march_each.get_regs_per_thread().values()
+        kernel = marches_on_card()[march.kind]
+        (registers,) = kernel.get_regs_per_thread().values()
         for threads in THREADS:
             trial = march.copy()
             trial.threads_per_block = threads
@@ -228,7 +232,7 @@ def measure(at: Timing) -> None:
                 f"{runs:>8}{threads:>9}{packed:>9.2f}{seconds:>9.2f}{rate:>9.4g}{rate / processor:>8.3g}"
                 f"{share:>9.2%}{occupancy(registers, threads):>10.1%}"
             )
-    print(f"{registers} registers a thread, local memory {march_each.get_local_mem_per_thread()}")
+    print(f"{registers} registers a thread, local memory {kernel.get_local_mem_per_thread()}")
 
 
 def map_of(side: int, at: Timing) -> None:
@@ -240,23 +244,61 @@ def map_of(side: int, at: Timing) -> None:
     print(f"map of {side * side} runs of {DURATION:g} s: {whole:.4g} s, {marched:.4g} s of them on the card")
 
 
+class DryMarch(CudaMarch):
+    """A march that compiles the kernel for a card that is not present, and does not march."""
+
+    def __init__(self, blocks: list[Blocks], states: list[State], step: float, ratio: int) -> None:
+        March.__init__(self, blocks, states, step, ratio)
+        self.there = [self.modes, self.paths, self.contacts, self.turning, self.carried, self.probes]
+
+    def _moved(self, part: Any) -> Any:
+        return part
+
+    def _march(self, imposed: ImposedOnRuns, records: Records) -> None:
+        from numba import cuda, typeof, types
+
+        modes, paths, contacts, turning, carried, probes = self.there
+        parts = Parts(
+            self.layout.sizes, self.timing, modes, paths, contacts, turning, carried, imposed, probes, records
+        )
+        kernel = marches_on_card()[self.kind].py_func
+        self.ptx, _ = cuda.compile_ptx(kernel, types.void(types.int64, typeof(parts)), cc=DRY)
+
+
+def marches_on_card() -> dict[tuple[bool | None, ...], Any]:
+    """Return the kernels of the card, by kind of systems."""
+    from stridula._kernels.cuda import marches
+
+    return marches
+
+
+def prepared(system: st.System, step: float) -> Case:
+    """Return a run of a system."""
+    arrays, scheme = assemble(system, []), st.ExactModal()
+    blocks = blocks_of(arrays, scheme, step)
+    state = state_at_start(arrays, scheme, step, blocks, st.GaussSeidel())
+    return Case(blocks, state, imposed_on(arrays, blocks.used, 0, 1, step))
+
+
 def dry_run() -> None:
     """Compile the march for a card that is not present and print the resources of a thread."""
-    from numba import cuda, types
     from numba.cuda import dispatcher
-
-    from stridula._kernels.cuda import march_each
 
     # Functions called by a kernel are compiled for the card at hand; here there is none.
     dispatcher.get_current_device = lambda: SimpleNamespace(compute_capability=DRY)
-    number, whole = types.float64, types.int64
-    a, b = types.Array(number, 2, "C"), types.Array(number, 3, "C")
-    probes = types.Tuple((types.Array(whole, 1, "C"), types.Array(whole, 2, "C"), a, a, a))
-    arguments = types.Tuple((whole, number, whole, a, a, b, a, a, a, a, a, probes, a, a, a, a))
-    began = time.perf_counter()
-    kind = types.void(whole, types.UniTuple(whole, 3), arguments)
-    ptx, _ = cuda.compile_ptx(march_each.py_func, kind, cc=DRY)
-    print(f"PTX for compute capability {DRY[0]}.{DRY[1]}: {len(ptx)} characters, {time.perf_counter() - began:.1f} s")
+    at = Timing(STEP, 1, 1)
+    disc = st.load_scenario("pin-on-disc").system
+    for name, system in (("one contact", squeal(radians(45.0), 1.5)), ("several", pad(2)), ("in space", disc)):
+        began, run = time.perf_counter(), prepared(system, at.step)
+        march = march_of(DryMarch, [run, run], at)
+        march.advance([run.imposed, run.imposed], 1)
+        took = time.perf_counter() - began
+        print(f"{name}: {len(march.ptx)} characters of PTX for compute capability {DRY[0]}.{DRY[1]}, {took:.1f} s")
+        show_resources(march.ptx)
+
+
+def show_resources(ptx: str) -> None:
+    """Print the resources of a thread of a kernel."""
     assembler = shutil.which("ptxas") or next(
         (str(found) for folder in sys.path for found in Path(folder).glob("nvidia/*/bin/ptxas")), None
     )
