@@ -177,7 +177,7 @@ def _control(key: str, path: Path, tables: dict[str, Any], value: float) -> Cont
             # Sentences after the first are about two beams.
             first, stop, _ = known_one.words.partition(". ")
             return replace(known_one, key=key, group=group, place="", words=first + stop.strip())
-    unit, scale = _shown_in(outline.unit(node), value)
+    unit, scale = _shown_in(next(iter(outline.units(node)), "1"), value)
     low, high = sorted((value / scale / REACH, value / scale * REACH))
     step = 10.0 ** math.floor(math.log10((high - low) / STEPS))
     words = _sentence((node or {}).get("description", ""))

@@ -21,7 +21,7 @@ from ..bodies import (
 from ..bodies.profile_mesh import BODY
 from ..checks import ArgumentError
 from ..disk import named
-from .fields import holds_tables
+from .tables import holds_tables
 
 Tables = dict[str, Any]
 # Records errors as problems of the key with this ending.

@@ -10,11 +10,15 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, create_model
 
-from ..declared import Choice, Declared, Each, Text, declared, texts
-from .fields import Table, read_as
+from ..declared import Choice, Declared, Each, Own, Text, declared, texts
+from .fields import ModalDamping, Rows
+from .kinds import Read
+from .tables import Table
 
 # Type, default (... if required) and description by key.
 Keys = Mapping[str, tuple[Any, Any, str]]
+# Types of fields that descriptions check themselves, by the name of their kind.
+OWN = {"damping": ModalDamping, "plane": Rows}
 
 
 class Derived(Table):
@@ -84,7 +88,7 @@ def _read(field: Declared) -> Any:
 
 @singledispatch
 def _typed(kind: Any) -> Any:
-    return Annotated[Any, read_as(kind)]
+    return Annotated[Any, Read(kind)]
 
 
 @_typed.register
@@ -94,9 +98,14 @@ def _choice(kind: Choice) -> Any:
 
 @_typed.register
 def _each(kind: Each) -> Any:
-    return list[Annotated[float, read_as(kind.one)]]
+    return list[Annotated[float, Read(kind.one)]]
 
 
 @_typed.register
 def _text(kind: Text) -> Any:
     return str
+
+
+@_typed.register
+def _own(kind: Own) -> Any:
+    return OWN[kind.what]

@@ -1,457 +1,186 @@
-"""Types of values in scenario tables: checked when read, described in the JSON schema."""
+"""Kinds of values that only scenario tables have, and the types of keys."""
 
 from __future__ import annotations
 
-import ast
-import inspect
-import sys
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cache, singledispatch
-from itertools import pairwise
+from dataclasses import dataclass
 from numbers import Integral
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Discriminator, GetCoreSchemaHandler, GetJsonSchemaHandler, Tag
-from pydantic_core import CoreSchema, PydanticCustomError
-from pydantic_core.core_schema import no_info_plain_validator_function
 
-from .. import declared as declarations
 from ..arrays import Array
 from ..bodies import Rayleigh
 from ..bodies.axisymmetric_body import DIRECTIONS
 from ..bodies.damping import DAMPING_LAWS
 from ..checks import ArgumentError
-from ..declared import Number, declared, texts
+from ..declared import FREQUENCY, Choice, Number, OneOrEach, Whole, declared, texts
 from ..records.packed import is_packed, unpacked
-from .quantities import UNITS, is_quantity, quantity
+from .kinds import INTEGER, NUMBER, TEXT, Read, Schema, any_of, by_name, list_of, read, refused, schema
+from .quantities import is_quantity, quantity
 
-
-class Table(BaseModel):
-    """A table with a fixed set of keys; the string below each key is its description."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    @classmethod
-    def descriptions(cls) -> dict[str, str]:
-        """Return the description of each key.
-
-        Read on request: storing them in the fields costs more than loading a scenario.
-        """
-        own = [table for table in cls.__mro__[::-1] if issubclass(table, Table)]
-        return {key: text for table in own for key, text in table._own_descriptions().items()}
-
-    @classmethod
-    def _own_descriptions(cls) -> dict[str, str]:
-        return _texts(cls.__module__)[cls.__name__]
-
-    @classmethod
-    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        node = handler(schema)
-        known = handler.resolve_ref_schema(node)["properties"]
-        for key, text in cls.descriptions().items():
-            known[key]["description"] = text
-        return node
-
-
-@cache
-def _texts(module: str) -> dict[str, dict[str, str]]:
-    """Return the descriptions below the keys of each class in a module."""
-    tree = ast.parse(inspect.getsource(sys.modules[module]))
-    return {node.name: _texts_in(node) for node in tree.body if isinstance(node, ast.ClassDef)}
-
-
-def _texts_in(table: ast.ClassDef) -> dict[str, str]:
-    texts = {}
-    for pair in pairwise(table.body):
-        match pair:
-            case ast.AnnAssign(target=ast.Name(id=key)), ast.Expr(value=ast.Constant(value=str(text))):
-                texts[key] = inspect.cleandoc(text)
-    return texts
-
-
-class _Kind:
-    """A value read by `read`, which raises ArgumentError; the caller adds the key and the value to the message."""
-
-    def read(self, value: Any) -> Any:
-        raise NotImplementedError
-
-    def json_schema(self) -> dict[str, Any]:
-        raise NotImplementedError
-
-    def or_each(self) -> _Kind:
-        """Return the type of one such value or a list of them."""
-        raise NotImplementedError
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return no_info_plain_validator_function(_in_words(self.read))
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        return self.json_schema()
-
-
-def _in_words(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    def validate(value: Any) -> Any:
-        try:
-            return read(value)
-        except ArgumentError as error:
-            # Passed as a value, so that braces in it are not taken for placeholders.
-            raise PydanticCustomError("words", "{words}", {"words": f"must {error.allowed}"}) from None
-
-    return validate
-
-
-class Quantity(Number, _Kind):
-    """A number in a range, or a text with such a number and a unit.
-
-    Attributes
-    ----------
-    unit, above, least, below, meaning : str, float or None
-        As of `Number`.
-    """
-
-    def or_each(self) -> _Kind:
-        return OneOrEach(self)
-
-    def read(self, value: Any) -> float:
-        return self.check("value", quantity(value, self.unit))
-
-    def json_schema(self) -> dict[str, Any]:
-        limits = {"exclusiveMinimum": self.above, "minimum": self.least, "exclusiveMaximum": self.below}
-        number = {"type": "number", **{word: limit for word, limit in limits.items() if limit is not None}}
-        return {"anyOf": [number, {"type": "string", "pattern": pattern_of(self.unit)}]}
-
-
-def pattern_of(unit: str) -> str:
-    """Return the pattern of texts that hold a number in a spelling of this SI unit."""
-    return rf"^\s*[-+0-9.eE]+\s*({'|'.join(UNITS[unit])})?\s*$"
+METRES, RADIANS = Number("m"), Number("rad")
+LENGTH = Number("m", above=0.0)
+RATIO = Number(least=0.0, below=1.0)
+FROM_0, FROM_1 = Whole(0), Whole(1)
+LIST_OF_NUMBERS = list_of(NUMBER)
 
 
 @dataclass(frozen=True)
-class OneOrEach(_Kind):
-    """One quantity, or a list of them.
+class OneOrByName:
+    """One number, or one for each name.
 
     Attributes
     ----------
-    one : Quantity
-        Type of each.
+    one : Number
+        Kind of each.
     """
 
-    one: Quantity
-
-    def read(self, value: Any) -> Any:
-        return [self.one.read(each) for each in value] if isinstance(value, list) else self.one.read(value)
-
-    def json_schema(self) -> dict[str, Any]:
-        one = self.one.json_schema()
-        return {"anyOf": [*one["anyOf"], {"type": "array", "items": one}]}
-
-
-@dataclass(frozen=True)
-class OneOrByName(_Kind):
-    """One quantity, or one for each name.
-
-    Attributes
-    ----------
-    one : Quantity
-        Type of each.
-    """
-
-    one: Quantity
-
-    def read(self, value: Any) -> Any:
-        if not isinstance(value, dict):
-            return self.one.read(value)
-        return {name: self.one.read(each) for name, each in value.items()}
-
-    def json_schema(self) -> dict[str, Any]:
-        one = self.one.json_schema()
-        return {"anyOf": [*one["anyOf"], {"type": "object", "additionalProperties": one}]}
-
-
-@dataclass(frozen=True)
-class DampingTable(_Kind):
-    """A law of damping: its name and its parameters."""
-
-    forms: ClassVar[dict[str, type]] = {law.form: law for law in DAMPING_LAWS}
-
-    def read(self, value: Any) -> Any:
-        form = value.get("form", Rayleigh.form)
-        if not isinstance(form, str) or form not in self.forms:
-            raise _refused(f"have a form that is one of {', '.join(self.forms)}")
-        parameters = declared(self.forms[form])
-        if value.keys() - {"form"} != {parameter.name for parameter in parameters}:
-            names = " and ".join(parameter.name for parameter in parameters)
-            raise _refused(f"have, in the form {form}, {names}")
-        given = {}
-        for parameter in parameters:
-            try:
-                given[parameter.name] = read_as(parameter.kind).read(value[parameter.name])
-            except ArgumentError as error:
-                raise _refused(f"have a {parameter.name} that must {error.allowed}") from None
-        try:
-            self.forms[form](**given)
-        except ArgumentError as error:
-            raise _refused(f"be in order: {error}") from None
-        return {"form": form, **given}
-
-    def json_schema(self) -> dict[str, Any]:
-        laws = []
-        for form, law in self.forms.items():
-            name = {"const": form, "description": f"form of damping: {', '.join(self.forms)}"}
-            words = texts(law)
-            keys = {
-                parameter.name: read_as(parameter.kind).json_schema() | {"description": words[parameter.name]}
-                for parameter in declared(law)
-            }
-            laws.append({"type": "object", "properties": {"form": name, **keys}, "additionalProperties": False})
-        return {"anyOf": laws}
-
-
-@singledispatch
-def read_as(kind: Any) -> _Kind:
-    """Return the type in scenario tables of a declared kind of field."""
-    raise TypeError(f"no scenario can give {kind}")
-
-
-@read_as.register
-def _number(kind: declarations.Number) -> _Kind:
-    return Quantity(**vars(kind))
-
-
-@read_as.register
-def _choice(kind: declarations.Choice) -> _Kind:
-    return Words(kind.words)
-
-
-@read_as.register
-def _number_or_word(kind: declarations.NumberOrWord) -> _Kind:
-    return NumberOrWord(Words(kind.words))
-
-
-@read_as.register
-def _way(kind: declarations.Way) -> _Kind:
-    return Way(kind)
-
-
-@read_as.register
-def _whole(kind: declarations.Whole) -> _Kind:
-    return Whole(kind.least)
-
-
-@read_as.register
-def _own(kind: declarations.Own) -> _Kind:
-    if kind.what == "plane":
-        return Numbers((2,))
-    if kind.what != "damping":
-        raise TypeError(f"no scenario can give {kind}")
-    return RatioOrLaw(each=True)
-
-
-@read_as.register(declarations.OneOrEach)
-@read_as.register(declarations.Each)
-def _each(kind: declarations.OneOrEach | declarations.Each) -> _Kind:
-    return read_as(kind.one).or_each()
-
-
-LAW_OF_DAMPING = DampingTable()
-
-
-@dataclass(frozen=True)
-class RatioOrLaw(_Kind):
-    """A damping ratio, a list with one for each mode where allowed, or a law of damping.
-
-    Attributes
-    ----------
-    each : bool
-        Whether a list is allowed.
-    """
-
-    each: bool
-
-    def read(self, value: Any) -> Any:
-        return LAW_OF_DAMPING.read(value) if isinstance(value, dict) else self._ratios.read(value)
-
-    def json_schema(self) -> dict[str, Any]:
-        return {"anyOf": [*self._ratios.json_schema()["anyOf"], *LAW_OF_DAMPING.json_schema()["anyOf"]]}
+    one: Number
 
     @property
-    def _ratios(self) -> Quantity | OneOrEach:
-        one = Quantity("1", least=0.0, below=1.0)
-        return OneOrEach(one) if self.each else one
-
-
-@dataclass(frozen=True)
-class Words(_Kind):
-    """A word of a choice, or a list of such words where allowed.
-
-    Attributes
-    ----------
-    allowed : tuple of str
-        The words.
-    each : bool
-        Whether a list is allowed.
-    """
-
-    allowed: tuple[str, ...]
-    each: bool = False
-
-    def or_each(self) -> _Kind:
-        return replace(self, each=True)
+    def schema(self) -> Schema:
+        one = schema(self.one)
+        return any_of(one, by_name(one))
 
     def read(self, value: Any) -> Any:
-        words = value if self.each and isinstance(value, list) else [value]
-        if any(word not in self.allowed for word in words):
-            raise _refused(f"be one of {', '.join(self.allowed)}{' or a list of them' if self.each else ''}")
-        return value
-
-    def json_schema(self) -> dict[str, Any]:
-        word = {"enum": list(self.allowed)}
-        return {"anyOf": [word, {"type": "array", "items": word}]} if self.each else word
+        is_table = isinstance(value, dict)
+        return {name: read(self.one, each) for name, each in value.items()} if is_table else read(self.one, value)
 
 
 @dataclass(frozen=True)
-class Whole(_Kind):
-    """A whole number.
+class NumberOr:
+    """A number, or a word in its place.
 
     Attributes
     ----------
-    least : int
-        Smallest allowed number.
-    """
-
-    least: int
-
-    def read(self, value: Any) -> int:
-        if isinstance(value, bool) or not isinstance(value, Integral):
-            raise _refused("be a whole number")
-        if value < self.least:
-            raise _refused(f"be at least {self.least}")
-        return int(value)
-
-    def json_schema(self) -> dict[str, Any]:
-        return {"type": "integer", "minimum": self.least}
-
-
-@dataclass(frozen=True)
-class NumberOrWord(_Kind):
-    """A whole number from 0 on, or a word of a choice.
-
-    Attributes
-    ----------
-    words : Words
-        The words.
-    """
-
-    words: Words
-
-    def read(self, value: Any) -> int | str:
-        try:
-            return self.words.read(value) if isinstance(value, str) else Whole(0).read(value)
-        except ArgumentError:
-            raise _refused(f"be a whole number from 0 on or {' or '.join(self.words.allowed)}") from None
-
-    def json_schema(self) -> dict[str, Any]:
-        return {"anyOf": [Whole(0).json_schema(), self.words.json_schema()]}
-
-
-@dataclass(frozen=True)
-class QuantityOrWord(_Kind):
-    """A quantity, or a word in its place.
-
-    Attributes
-    ----------
-    one : Quantity
-        The quantity.
+    one : Number
+        Kind of the number.
     word : str
         The word.
     """
 
-    one: Quantity
+    one: Number
     word: str
+
+    @property
+    def schema(self) -> Schema:
+        return any_of(schema(self.one), {"const": self.word})
 
     def read(self, value: Any) -> float | str:
         if value == self.word:
             return self.word
         try:
-            return self.one.read(value)
+            number: float = read(self.one, value)
         except ArgumentError as error:
-            raise _refused(f"{error.allowed} or {self.word!r}") from None
-
-    def json_schema(self) -> dict[str, Any]:
-        return {"anyOf": [*self.one.json_schema()["anyOf"], {"const": self.word}]}
+            raise refused(f"{error.allowed} or {self.word!r}") from None
+        return number
 
 
 @dataclass(frozen=True)
-class Way(_Kind):
-    """A direction: a word, or three numbers.
-
-    Attributes
-    ----------
-    way : Way
-        Declaration, with the allowed words.
-    """
-
-    way: declarations.Way
-
-    def read(self, value: Any) -> Any:
-        try:
-            return self.way.check("value", value)
-        except ArgumentError:
-            raise _refused(f"be {', '.join(self.way.words)} or a list of three numbers, not all zero") from None
-
-    def json_schema(self) -> dict[str, Any]:
-        row = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
-        return {"anyOf": [{"enum": list(self.way.words)}, row]}
-
-
-@dataclass(frozen=True)
-class Row(_Kind):
+class Row:
     """A fixed number of values in order, such as the coordinates of a point.
 
     Attributes
     ----------
-    each : tuple of Quantity or Whole
-        Types of the values.
+    each : tuple of Number or Whole
+        Kinds of the values.
     words : str
         Description of the values, for messages.
     """
 
-    each: tuple[Quantity | Whole, ...]
+    each: tuple[Number | Whole, ...]
     words: str
+
+    @property
+    def schema(self) -> Schema:
+        size, one = len(self.each), schema(self.each[0])
+        if len(set(self.each)) == 1:
+            return list_of(one, size)
+        each = [schema(kind) for kind in self.each]
+        return {"type": "array", "prefixItems": each, "minItems": size, "maxItems": size}
 
     def read(self, value: Any) -> tuple[Any, ...]:
         if not isinstance(value, (list, tuple)) or len(value) != len(self.each):
-            raise _refused(f"be {self.words}")
+            raise refused(f"be {self.words}")
         try:
-            return tuple(kind.read(one) for kind, one in zip(self.each, value, strict=True))
+            return tuple(read(kind, one) for kind, one in zip(self.each, value, strict=True))
         except ArgumentError as error:
             share = "each" if len(set(self.each)) == 1 else "one"
-            raise _refused(f"be {self.words}, {share} of which must {error.allowed}") from None
-
-    def json_schema(self) -> dict[str, Any]:
-        size = {"minItems": len(self.each), "maxItems": len(self.each)}
-        first, *others = self.each
-        if all(other == first for other in others):
-            return {"type": "array", "items": first.json_schema(), **size}
-        return {"type": "array", "prefixItems": [kind.json_schema() for kind in self.each], **size}
+            raise refused(f"be {self.words}, {share} of which must {error.allowed}") from None
 
 
-DISTANCES = Row((Quantity("m"), Quantity("m")), "two distances, along length and width")
-COORDINATES = Row((Quantity("m"),) * 3, "three distances, along x, y and z")
-AROUND = Row((Quantity("m"), Quantity("rad"), Quantity("m")), "(r, theta, z), two distances and an angle between them")
+DISTANCES = Row((METRES, METRES), "two distances, along length and width")
+COORDINATES = Row((METRES,) * 3, "three distances, along x, y and z")
+AROUND = Row((METRES, RADIANS, METRES), "(r, theta, z), two distances and an angle between them")
+
+
+class LawOfDamping:
+    """A law of damping: its name and its parameters."""
+
+    forms: ClassVar = {law.form: law for law in DAMPING_LAWS}
+
+    @property
+    def schema(self) -> Schema:
+        return any_of(*(self._schema_of(form, law) for form, law in self.forms.items()))
+
+    def _schema_of(self, form: str, law: type) -> Schema:
+        name = {"const": form, "description": f"form of damping: {', '.join(self.forms)}"}
+        words = texts(law)
+        keys = {each.name: schema(each.kind) | {"description": words[each.name]} for each in declared(law)}
+        return {"type": "object", "properties": {"form": name, **keys}, "additionalProperties": False}
+
+    def read(self, value: Any) -> Any:
+        form = value.get("form", Rayleigh.form)
+        if not isinstance(form, str) or form not in self.forms:
+            raise refused(f"have a form that is one of {', '.join(self.forms)}")
+        parameters = declared(self.forms[form])
+        if value.keys() - {"form"} != {parameter.name for parameter in parameters}:
+            names = " and ".join(parameter.name for parameter in parameters)
+            raise refused(f"have, in the form {form}, {names}")
+        given = {}
+        for parameter in parameters:
+            try:
+                given[parameter.name] = read(parameter.kind, value[parameter.name])
+            except ArgumentError as error:
+                raise refused(f"have a {parameter.name} that must {error.allowed}") from None
+        try:
+            self.forms[form](**given)
+        except ArgumentError as error:
+            raise refused(f"be in order: {error}") from None
+        return {"form": form, **given}
+
+
+LAW_OF_DAMPING = LawOfDamping()
 
 
 @dataclass(frozen=True)
-class Place(_Kind):
+class OrLaw:
+    """Damping ratios, or a law of damping.
+
+    Attributes
+    ----------
+    ratios : Number or OneOrEach
+        Kind of the ratios.
+    """
+
+    ratios: Number | OneOrEach
+
+    @property
+    def schema(self) -> Schema:
+        return any_of(schema(self.ratios), LAW_OF_DAMPING.schema)
+
+    def read(self, value: Any) -> Any:
+        return read(LAW_OF_DAMPING if isinstance(value, dict) else self.ratios, value)
+
+
+class Place:
     """A point of a body.
 
     One of its named points, a position along a beam, two distances on a plate, or (r, theta, z) in a body of
     revolution.
     """
 
-    names = ("tip", "root", "centre")
+    schema = any_of({"enum": ["tip", "root", "centre"]}, TEXT, NUMBER, DISTANCES.schema, AROUND.schema)
 
     def read(self, value: Any) -> Any:
         if isinstance(value, str):
@@ -461,66 +190,54 @@ class Place(_Kind):
         try:
             return quantity(value, "m")
         except ArgumentError as error:
-            raise _refused(f"be the name of a point or a position, which must {error.allowed}") from None
-
-    def json_schema(self) -> dict[str, Any]:
-        positions = [{"type": "number"}, DISTANCES.json_schema(), AROUND.json_schema()]
-        return {"anyOf": [{"enum": list(self.names)}, {"type": "string"}, *positions]}
+            raise refused(f"be the name of a point or a position, which must {error.allowed}") from None
 
 
-@dataclass(frozen=True)
-class Node(_Kind):
+class Node:
     """A node of a mesh: the name of a set of one node, its number, or its coordinates."""
+
+    schema = any_of(TEXT, schema(FROM_0), COORDINATES.schema)
 
     def read(self, value: Any) -> Any:
         if isinstance(value, str):
             return value
-        return COORDINATES.read(value) if isinstance(value, (list, tuple)) else Whole(0).read(value)
-
-    def json_schema(self) -> dict[str, Any]:
-        return {"anyOf": [{"type": "string"}, Whole(0).json_schema(), COORDINATES.json_schema()]}
+        return read(COORDINATES if isinstance(value, (list, tuple)) else FROM_0, value)
 
 
-@dataclass(frozen=True)
-class Fixed(_Kind):
+class Fixed:
     """Groups of faces or nodes that are held: their names, or the held directions by name."""
+
+    schema = any_of(list_of(TEXT), by_name(TEXT))
 
     def read(self, value: Any) -> Any:
         given = value.values() if isinstance(value, dict) else value
         if not isinstance(value, (dict, list)) or not all(isinstance(one, str) for one in given):
-            raise _refused('be a list of names, or directions by name, such as {top = "xz"}')
+            raise refused('be a list of names, or directions by name, such as {top = "xz"}')
         return value
 
-    def json_schema(self) -> dict[str, Any]:
-        word = {"type": "string"}
-        return {"anyOf": [{"type": "array", "items": word}, {"type": "object", "additionalProperties": word}]}
 
-
-@dataclass(frozen=True)
-class Divided(_Kind):
+class Divided:
     """Faces in contact: their names, or their divisions into points by name."""
+
+    schema = any_of(
+        list_of(TEXT),
+        by_name(any_of(schema(FROM_1), list_of(schema(FROM_1), 2), {"const": "integration"})),
+    )
 
     def read(self, value: Any) -> Any:
         if isinstance(value, list) and all(isinstance(one, str) for one in value):
             return value
         if not isinstance(value, dict) or not all(map(self._is_division, value.values())):
-            raise _refused("be a list of names, or divisions by name, such as {bottom = 30} or {bottom = [6, 5]}")
+            raise refused("be a list of names, or divisions by name, such as {bottom = 30} or {bottom = [6, 5]}")
         return {name: tuple(one) if isinstance(one, list) else one for name, one in value.items()}
 
     @staticmethod
     def _is_division(one: Any) -> bool:
         return _is_whole(one) or one == "integration" or (isinstance(one, list) and all(map(_is_whole, one)))
 
-    def json_schema(self) -> dict[str, Any]:
-        number = {"type": "integer", "minimum": 1}
-        pair = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
-        one = {"anyOf": [number, pair, {"const": "integration"}]}
-        names = {"type": "array", "items": {"type": "string"}}
-        return {"anyOf": [names, {"type": "object", "additionalProperties": one}]}
-
 
 @dataclass(frozen=True)
-class Numbers(_Kind):
+class Numbers:
     """A list of numbers or a matrix, written out or packed; where allowed also a number, a law of damping or a file.
 
     Attributes
@@ -537,6 +254,11 @@ class Numbers(_Kind):
     file: bool = False
     damping: bool = False
 
+    @property
+    def schema(self) -> Schema:
+        numbers = [(NUMBER, LIST_OF_NUMBERS, list_of(LIST_OF_NUMBERS))[dimension] for dimension in self.dimensions]
+        return any_of(*numbers, *([LAW_OF_DAMPING.schema] if self.damping else []), TEXT)
+
     def read(self, value: Any) -> Any:
         array: Array | None
         if isinstance(value, str) and is_packed(value):
@@ -550,42 +272,31 @@ class Numbers(_Kind):
         else:
             array = _array(value)
         if array is None or array.ndim not in self.dimensions:
-            raise _refused(self._words())
+            raise refused(self._words())
         if not np.isfinite(array).all():
-            raise _refused("hold finite numbers only")
+            raise refused("hold finite numbers only")
         return array
 
-    def json_schema(self) -> dict[str, Any]:
-        row = {"type": "array", "items": {"type": "number"}}
-        kinds = {0: {"type": "number"}, 1: row, 2: {"type": "array", "items": row}}
-        laws = LAW_OF_DAMPING.json_schema()["anyOf"] if self.damping else []
-        return {"anyOf": [*(kinds[dimension] for dimension in self.dimensions), *laws, {"type": "string"}]}
-
     def _words(self) -> str:
-        kinds = {0: "a number", 1: "a list of numbers", 2: "a matrix, a list of rows of numbers"}
+        kinds = ("a number", "a list of numbers", "a matrix, a list of rows of numbers")
         words = [kinds[dimension] for dimension in self.dimensions]
         words += ["a law of damping"] if self.damping else []
         words += ["a file"] if self.file else []
         return f"be {' or '.join(words)}"
 
 
-@dataclass(frozen=True)
-class Points(_Kind):
+VECTOR, MATRIX = Numbers((1,)), Numbers((2,))
+LABEL = any_of(INTEGER, list_of(INTEGER))
+ALONG_AXES = {"type": "object", "properties": dict.fromkeys("xyz", LABEL), "additionalProperties": False}
+
+
+class Points:
     """Points of a reduced body by name: rows, degrees of freedom or labels along x and y, a node or a place."""
 
-    def read(self, value: Any) -> dict[str, Any]:
-        if not isinstance(value, dict):
-            raise _refused("be a table of points by name")
-        return {name: self._point(name, point) for name, point in value.items()}
+    schema = by_name(any_of(ALONG_AXES, list_of(LABEL), INTEGER, LIST_OF_NUMBERS, MATRIX.schema))
 
-    def json_schema(self) -> dict[str, Any]:
-        rows = Numbers((2,)).json_schema()
-        label = {"anyOf": [{"type": "integer"}, {"type": "array", "items": {"type": "integer"}}]}
-        along = dict.fromkeys("xyz", label)
-        axes = {"type": "object", "properties": along, "additionalProperties": False}
-        pair = {"type": "array", "items": label}
-        node, place = {"type": "integer"}, {"type": "array", "items": {"type": "number"}}
-        return {"type": "object", "additionalProperties": {"anyOf": [axes, pair, node, place, *rows["anyOf"]]}}
+    def read(self, value: Any) -> dict[str, Any]:
+        return {name: self._point(name, point) for name, point in _by_name(value).items()}
 
     def _point(self, name: str, point: Any) -> Any:
         if isinstance(point, dict) and set(point) <= {"x", "y", "z"}:
@@ -598,70 +309,38 @@ class Points(_Kind):
         if place is not None and place.shape == (3,) and np.isfinite(place).all():
             return tuple(place.tolist())
         try:
-            return Numbers((2,)).read(point)
+            return MATRIX.read(point)
         except ArgumentError:
-            raise _refused(
+            raise refused(
                 f"give the point {name} as rows over the degrees of freedom, shape (2, n) or (3, n), or by the degrees "
                 "of freedom that it moves with: {x = 0, y = 1}, or as a node or a place where files have them"
             ) from None
 
 
-@dataclass(frozen=True)
-class Places(_Kind):
+class Places:
     """Places of points by name: three numbers each, along x, y and z [m]."""
 
+    schema = by_name(LIST_OF_NUMBERS)
+
     def read(self, value: Any) -> dict[str, Any]:
-        if not isinstance(value, dict):
-            raise _refused("be a table of points by name")
-        return {name: tuple(Numbers((1,)).read(place).tolist()) for name, place in value.items()}
-
-    def json_schema(self) -> dict[str, Any]:
-        return {"type": "object", "additionalProperties": {"type": "array", "items": {"type": "number"}}}
+        return {name: tuple(VECTOR.read(place).tolist()) for name, place in _by_name(value).items()}
 
 
-@dataclass(frozen=True)
-class Motion(_Kind):
+class Motion:
     """Effect of a translation on the degrees of freedom: rows, or with labels the numbers of those along x, y and z."""
+
+    schema = any_of(list_of(INTEGER), MATRIX.schema)
 
     def read(self, value: Any) -> Any:
         if isinstance(value, list) and len(value) in (2, 3) and all(map(_is_whole, value)):
             return tuple(value)
-        return Numbers((2,)).read(value)
-
-    def json_schema(self) -> dict[str, Any]:
-        return {"anyOf": [{"type": "array", "items": {"type": "integer"}}, *Numbers((2,)).json_schema()["anyOf"]]}
+        return MATRIX.read(value)
 
 
-# Tags of unions without a key that distinguishes them; pydantic puts them into the paths of errors.
-TEXT, ONE, BY_NAME = "a text", "one table", "tables by name"
-
-
-def text_or(table: Any) -> Any:
-    """Return the type of a text or a table."""
-    return Annotated[Annotated[str, Tag(TEXT)] | Annotated[table, Tag(ONE)], Discriminator(_text_or_one)]
-
-
-def one_or_by_name(table: Any) -> Any:
-    """Return the type of one table, or of tables by name."""
-    several = Annotated[dict[str, table], Tag(BY_NAME)]
-    return Annotated[Annotated[table, Tag(ONE)] | several, Discriminator(_one_or_by_name)]
-
-
-def holds_tables(value: Any) -> bool:
-    """Return whether a table holds tables by name."""
-    return isinstance(value, dict) and any(isinstance(each, (dict, BaseModel)) for each in value.values())
-
-
-def _text_or_one(value: Any) -> str:
-    return TEXT if isinstance(value, str) else ONE
-
-
-def _one_or_by_name(value: Any) -> str:
-    return BY_NAME if holds_tables(value) else ONE
-
-
-def _refused(allowed: str) -> ArgumentError:
-    return ArgumentError("value", allowed)
+def _by_name(value: Any) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise refused("be a table of points by name")
+    return value
 
 
 def _array(value: Any) -> Array | None:
@@ -690,49 +369,46 @@ def _is_label_or_none(value: Any) -> bool:
     return value is None or _is_whole(value) or is_label
 
 
-Damping = Annotated[Any, RatioOrLaw(each=False)]
-Mass = Annotated[float, Quantity("kg", above=0.0)]
-Length = Annotated[float, Quantity("m", above=0.0)]
-Distance = Annotated[float, Quantity("m", least=0.0)]
-Angle = Annotated[float, Quantity("rad")]
-Frequency = Annotated[float, Quantity("Hz", above=0.0, below=1e12)]
-FrequencyOrAll = Annotated[float | str, QuantityOrWord(Quantity("Hz", above=0.0, below=1e12), "all")]
-Time = Annotated[float, Quantity("s", above=0.0)]
-Velocity = Annotated[float, Quantity("m/s")]
-AnyAcceleration = Annotated[float, Quantity("m/s2")]
-Count = Annotated[int, Whole(1)]
-Counts = Annotated[tuple[int, int], Row((Whole(1),) * 2, "two whole numbers, along length and width")]
-CountsOrNone = Annotated[tuple[int, int], Row((Whole(0),) * 2, "two whole numbers, along length and width")]
-Divisions = Annotated[tuple[int, int, int], Row((Whole(1),) * 3, "three whole numbers")]
-Point = Annotated[Any, Place()]
-Spot = Annotated[tuple[float, float], DISTANCES]
-Position = Annotated[float, Quantity("m")]
-PositiveRatio = Annotated[float, Quantity("1", above=0.0)]
-Matrix = Annotated[Any, Numbers((2,), file=True)]
-ModalDamping = Annotated[Any, RatioOrLaw(each=True)]
-ReducedDamping = Annotated[Any, Numbers((0, 1, 2), file=True, damping=True)]
-Vector = Annotated[Any, Numbers((1,))]
-Rows = Annotated[Any, Numbers((2,))]
-Stiffness = Annotated[float, Quantity("N/m", above=0.0)]
-StiffnessOfArea = Annotated[float, Quantity("N/m3", above=0.0)]
-AngularVelocity = Annotated[float, Quantity("rad/s")]
-PointTable = Annotated[Any, Points()]
-PlaceTable = Annotated[Any, Places()]
-Inertia = Annotated[Any, Numbers((0, 1, 2))]
-Translation = Annotated[Any, Motion()]
-Lengths = Annotated[tuple[float, float, float], Row((Quantity("m", above=0.0),) * 3, "three lengths")]
-Offset = Annotated[tuple[float, float, float], Row((Quantity("m"),) * 3, "three lengths")]
-Direction = Annotated[tuple[float, float, float], Row((Quantity("1"),) * 3, "three numbers")]
-Rotation = Annotated[tuple[float, float, float], Row((Quantity("rad"),) * 3, "three angles")]
-LengthOrLayers = Annotated[Any, OneOrByName(Quantity("m", above=0.0))]
-Radii = Annotated[tuple[float, float], Row((Quantity("m", above=0.0),) * 2, "two radii")]
-Angles = Annotated[tuple[float, float], Row((Quantity("rad"),) * 2, "two angles")]
-OfProfile = Annotated[tuple[float, float], Row((Quantity("m"),) * 2, "(r, z), two distances")]
-LengthOrEach = Annotated[Any, OneOrEach(Quantity("m", above=0.0))]
-MeshNode = Annotated[Any, Node()]
-FixedGroups = Annotated[Any, Fixed()]
-DividedFaces = Annotated[Any, Divided()]
-Directions = Annotated[Any, Words(DIRECTIONS, each=True)]
-
-# In the JSON schema the unit of a number is identified by the allowed spellings of its text.
-UNIT_OF_PATTERN = {Quantity(unit).json_schema()["anyOf"][1]["pattern"]: unit for unit in UNITS}
+Mass = Annotated[float, Read(Number("kg", above=0.0))]
+Length = Annotated[float, Read(LENGTH)]
+Distance = Annotated[float, Read(Number("m", least=0.0))]
+Position = Annotated[float, Read(METRES)]
+Angle = Annotated[float, Read(RADIANS)]
+Frequency = Annotated[float, Read(FREQUENCY)]
+FrequencyOrAll = Annotated[float | str, Read(NumberOr(FREQUENCY, "all"))]
+Time = Annotated[float, Read(Number("s", above=0.0))]
+Velocity = Annotated[float, Read(Number("m/s"))]
+AngularVelocity = Annotated[float, Read(Number("rad/s"))]
+Stiffness = Annotated[float, Read(Number("N/m", above=0.0))]
+StiffnessOfArea = Annotated[float, Read(Number("N/m3", above=0.0))]
+PositiveRatio = Annotated[float, Read(Number(above=0.0))]
+Count = Annotated[int, Read(FROM_1)]
+CountFrom0 = Annotated[int, Read(FROM_0)]
+LengthOrEach = Annotated[Any, Read(OneOrEach(LENGTH))]
+LengthOrLayers = Annotated[Any, Read(OneOrByName(LENGTH))]
+Directions = Annotated[Any, Read(OneOrEach(Choice(DIRECTIONS)))]
+Damping = Annotated[Any, Read(OrLaw(RATIO))]
+ModalDamping = Annotated[Any, Read(OrLaw(OneOrEach(RATIO)))]
+ReducedDamping = Annotated[Any, Read(Numbers((0, 1, 2), file=True, damping=True))]
+Counts = Annotated[tuple[int, int], Read(Row((FROM_1,) * 2, "two whole numbers, along length and width"))]
+CountsOrNone = Annotated[tuple[int, int], Read(Row((FROM_0,) * 2, "two whole numbers, along length and width"))]
+Divisions = Annotated[tuple[int, int, int], Read(Row((FROM_1,) * 3, "three whole numbers"))]
+Spot = Annotated[tuple[float, float], Read(DISTANCES)]
+OfProfile = Annotated[tuple[float, float], Read(Row((METRES,) * 2, "(r, z), two distances"))]
+Radii = Annotated[tuple[float, float], Read(Row((LENGTH,) * 2, "two radii"))]
+Angles = Annotated[tuple[float, float], Read(Row((RADIANS,) * 2, "two angles"))]
+Lengths = Annotated[tuple[float, float, float], Read(Row((LENGTH,) * 3, "three lengths"))]
+Offset = Annotated[tuple[float, float, float], Read(Row((METRES,) * 3, "three lengths"))]
+Direction = Annotated[tuple[float, float, float], Read(Row((Number(),) * 3, "three numbers"))]
+Rotation = Annotated[tuple[float, float, float], Read(Row((RADIANS,) * 3, "three angles"))]
+Vector = Annotated[Any, Read(VECTOR)]
+Rows = Annotated[Any, Read(MATRIX)]
+Matrix = Annotated[Any, Read(Numbers((2,), file=True))]
+Inertia = Annotated[Any, Read(Numbers((0, 1, 2)))]
+Translation = Annotated[Any, Read(Motion())]
+Point = Annotated[Any, Read(Place())]
+PointTable = Annotated[Any, Read(Points())]
+PlaceTable = Annotated[Any, Read(Places())]
+MeshNode = Annotated[Any, Read(Node())]
+FixedGroups = Annotated[Any, Read(Fixed())]
+DividedFaces = Annotated[Any, Read(Divided())]

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import wraps
 from typing import Any, TypeVar
 
-from .fields import BY_NAME, ONE, TEXT, holds_tables, pattern_of
 from .quantities import UNITS
 from .schema import TOUCHING, json_schema
+from .tables import BY_NAME, ONE, TEXT, holds_tables
 
 Node = dict[str, Any]
 Path = tuple[str | int, ...]
@@ -71,15 +71,10 @@ def is_number(node: Node) -> bool:
     return any(variant.get("type") in ("number", "integer") for variant in _variants(node))
 
 
-def patterns(node: Node | None) -> set[str]:
-    """Return the patterns of the texts that a key accepts."""
-    return {variant["pattern"] for variant in _variants(node) if "pattern" in variant}
-
-
-def unit(node: Node | None) -> str:
-    """Return the SI unit of the numbers that a key accepts, ``"1"`` if they have none."""
-    known = patterns(node)
-    return next((unit for unit in UNITS if pattern_of(unit) in known), "1")
+def units(node: Node | None) -> list[str]:
+    """Return the SI units of the numbers that a key accepts, none if it accepts no number with a unit."""
+    known = {variant.get("unit") for variant in _variants(node)}
+    return [unit for unit in UNITS if unit in known]
 
 
 def is_choice(node: Node | None) -> bool:

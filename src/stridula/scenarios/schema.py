@@ -10,10 +10,11 @@ from pydantic import Field
 from ..integration import GaussSeidel
 from ..records.probes import DIRECTION
 from . import fields as is_
-from .fields import Table
+from .kinds import Read
 from .schema_bodies import Body, Material, Section, Slider, Track
 from .schema_contacts import Connection, Contact, Friction, PairContact, Surface
 from .schema_drives import Drive
+from .tables import Table
 
 
 class Motion(Table):
@@ -23,7 +24,7 @@ class Motion(Table):
     """body: slider, track or its name; the track if left out, the slider on a rigid track"""
     point: is_.Point | None = None
     """point: tip, root, centre, the name of a point or a position [m]; centre or tip if left out"""
-    direction: Annotated[Any, is_.Way(DIRECTION)] = "y"
+    direction: Annotated[Any, Read(DIRECTION)] = "y"
     """x, y, z in space, axial, transverse, or world components [x, y, z]"""
 
 
@@ -48,7 +49,7 @@ class MotionOfMode(Table):
     """displacement, velocity, acceleration, reaction, support_force or modal_displacement, _velocity or _motion"""
     body: str | None = None
     """body: slider, track or its name; the track if left out, the slider on a rigid track"""
-    mode: Annotated[int, is_.Whole(0)]
+    mode: is_.CountFrom0
     """number of the mode from 0, by increasing frequency, residual shapes last"""
 
 

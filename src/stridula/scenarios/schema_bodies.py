@@ -10,9 +10,9 @@ from ..bodies import ModalPlate
 from ..bodies.sections import SECTIONS
 from . import fields as is_
 from .derived import Keys, one_of, table_of
-from .fields import Table
 from .schema_drives import History
 from .schema_meshed import meshed_tables
+from .tables import Table
 
 KINDS = "finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"
 OWN_NAME = "name in records, the name of the table if left out"

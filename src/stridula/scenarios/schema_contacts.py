@@ -8,8 +8,8 @@ from ..connections import CONNECTIONS
 from ..contact import LAWS, STIFFNESSES, Coulomb, PointContact, RigidTrack, SurfaceContact
 from . import fields as is_
 from .derived import Keys, one_of, table_of
-from .fields import Table
 from .schema_drives import History
+from .tables import Table
 
 if TYPE_CHECKING:
     Friction = Any

@@ -9,8 +9,8 @@ from ..bodies.profile_mesh import BODY
 from ..bodies.solid_kinds import KINDS
 from . import fields as is_
 from .derived import Keys, one_of, table_of
-from .fields import Table
 from .schema_drives import History
+from .tables import Table, one_or_by_name, text_or
 
 
 class Sides(Table):
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     PlaceOrBox = Any
     Element = Any
 else:
-    PlaceOrBox = is_.text_or(Sides)
+    PlaceOrBox = text_or(Sides)
     Element = Literal[tuple(KINDS)]
 
 
@@ -175,7 +175,7 @@ MESHES = (BlockMesh, SectorMesh, ExtrusionMesh, FileMesh, ElementsMesh)
 if TYPE_CHECKING:
     HeldPlaces = Any
 else:
-    HeldPlaces = list[is_.text_or(Held)]
+    HeldPlaces = list[text_or(Held)]
 
 
 def meshed_tables(kinds: str, material: Any, name: Keys) -> list[type[Table]]:
@@ -192,7 +192,7 @@ def meshed_tables(kinds: str, material: Any, name: Keys) -> list[type[Table]]:
     """
     revolved: Keys = {
         "profile": (one_of("shape", PROFILES), ..., "section through the axis, the half with r >= 0"),
-        "material": (is_.one_or_by_name(material), ..., "material, or materials of the regions by name"),
+        "material": (one_or_by_name(material), ..., "material, or materials of the regions by name"),
     }
     held: Keys = {
         "held": (HeldPlaces, (), "places that do not move: their names, or tables with directions"),
@@ -205,7 +205,7 @@ def meshed_tables(kinds: str, material: Any, name: Keys) -> list[type[Table]]:
     }
     meshed: Keys = {
         "mesh": (one_of("shape", MESHES), ..., "its mesh"),
-        "materials": (is_.one_or_by_name(material), ..., "material, or materials of the groups by name"),
+        "materials": (one_or_by_name(material), ..., "material, or materials of the groups by name"),
         "points": (dict[str, is_.MeshNode], {}, "nodes by name: a set of one, a number or coordinates [m]"),
         "fixed": (is_.FixedGroups, (), "groups of faces or nodes that are held: their names, or directions by name"),
     }

@@ -104,5 +104,5 @@ def _relaxed(node: Any) -> Any:
         return [_relaxed(entry) for entry in node]
     if not isinstance(node, dict):
         return node
-    kept = {key: value for key, value in node.items() if key not in ("required", "discriminator")}
+    kept = {key: value for key, value in node.items() if key not in ("required", "discriminator", "unit")}
     return {"anyOf" if key == "oneOf" else key: _relaxed(value) for key, value in kept.items()}

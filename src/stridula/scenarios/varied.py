@@ -13,7 +13,6 @@ from typing import Any
 from ..checks import ArgumentError, brief, suggestion
 from . import outline
 from .errors import ScenarioError, as_written, shown
-from .fields import UNIT_OF_PATTERN
 from .keys import located, plain_value
 from .outline import Node, Path
 from .quantities import parts, quantity
@@ -143,8 +142,8 @@ def varied_keys(tables: dict[str, Any], keys: Sequence[str], sets: Sequence[Sequ
         if names_files(body) and path[2] in MESHES:
             raise ScenarioError([f"key must not be {full}: meshes are read once for all points, got {brief(key)}"])
         node = _node(path, changed)
-        units = {UNIT_OF_PATTERN[pattern] for pattern in outline.patterns(node) if pattern in UNIT_OF_PATTERN}
-        found.append(Varied(key, path, full, units.pop() if len(units) == 1 else None, node))
+        units = outline.units(node)
+        found.append(Varied(key, path, full, units[0] if len(units) == 1 else None, node))
     return found
 
 
