@@ -260,3 +260,20 @@ def test_a_damaged_packed_matrix_is_reported(tmp_path):
     text = MASS_ON_FLOOR.replace("mass = 1", 'stiffness = [[1]]\npoints = {p = {x = 0}}\nmass = "float64 1x1 eJx"')
     found = problems(text.replace("point mass", "reduced"), tmp_path)
     assert found == ("bodies.a.mass must be a complete packed array, as in records, got 'float64 1x1 eJx'",)
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "value", "message"),
+    [
+        ("squeal", "contact.stiffness", -1, "contact.stiffness must be above 0, got -1"),
+        ("squeal", "contact.stiffness", "5 kg", "contact.stiffness must be a number in N/m, N/mm or kN/m, got '5 kg'"),
+        ("squeal", "contact.stiffness", {"kind": "linear"}, "contact.stiffness.stiffness must be given"),
+        ("squeal-on-plate", "in_plane", "no way", "bodies.plate.in_plane must be true or false, got 'no way'"),
+        ("pad-on-disc", "bodies.disc.held.0.directions", ["r"], "bodies.disc.held.0.place must be given"),
+    ],
+)
+def test_a_value_of_another_type_is_refused_once_in_words(name, key, value, message):
+    with pytest.raises(st.ScenarioError) as caught:
+        st.load_scenario(name, {key: value})
+    (problem,) = caught.value.problems
+    assert problem.startswith(message)

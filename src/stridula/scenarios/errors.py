@@ -146,6 +146,7 @@ def _line(error: dict[str, Any], tables: dict[str, Any], written: dict[str, Any]
         allowed = outline.words(node)
         return f"{key} must be one of {', '.join(allowed)}, got {shown(value)}{suggestion(value, allowed)}"
     words = {"list_type": "must be a list", "string_type": "must be a text"}
+    words |= dict.fromkeys(("bool_type", "bool_parsing"), "must be true or false")
     words |= dict.fromkeys(("model_type", "model_attributes_type", "dict_type"), "must be a table")
     return f"{key} {context.get('words') or words.get(kind, error['msg'])}, got {shown(value)}"
 

@@ -109,7 +109,8 @@ def _set(tables: dict[str, Any], path: Path, value: Any) -> None:
     _make_shared(tables, path)
     table: Any = tables
     for part in path[:-1]:
-        if isinstance(table, dict) and not isinstance(table.get(part), (dict, list)):
+        held = table.get(part) if isinstance(table, dict) else table[part]
+        if not isinstance(held, (dict, list)):
             table[part] = {}
         table = table[part]
     if path[-1] in outline.TAGS and table.get(path[-1]) != value:

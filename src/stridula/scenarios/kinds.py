@@ -52,14 +52,13 @@ class Read:
     kind: Any
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return no_info_plain_validator_function(self.validate)
+        return no_info_plain_validator_function(self._validated)
 
     def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> Schema:
         # A copy, to which pydantic adds the title and the default.
         return dict(schema(self.kind))
 
-    def validate(self, value: Any) -> Any:
-        """Return a value as `read` does; raise an error of pydantic if it is refused."""
+    def _validated(self, value: Any) -> Any:
         try:
             return read(self.kind, value)
         except ArgumentError as error:

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from .quantities import UNITS
 from .schema import TOUCHING, json_schema
-from .tables import BY_NAME, ONE, TEXT, holds_tables
+from .tables import FORMS, holds_tables
 
 Node = dict[str, Any]
 Path = tuple[str | int, ...]
@@ -151,7 +151,7 @@ def plain(location: Sequence[str | int], tables: Any) -> Path:
         if tag is not None and part == tag:
             tag = None
             continue
-        if part in (TEXT, ONE, BY_NAME) and look_up(tables, (*path, part)) is None:
+        if part in FORMS and look_up(tables, (*path, part)) is None:
             continue
         path.append(part)
         table = look_up(tables, path)

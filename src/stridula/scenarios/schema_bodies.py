@@ -184,7 +184,7 @@ class Modal(Table):
     """twice the damping ratio times the angular frequency, one for each mode [1/s]"""
     translation: is_.Translation | None = None
     """force on each mode from an acceleration along x, y and z, a row each; gravity and initial velocities need it"""
-    residual: int = 0
+    residual: is_.CountFrom0 = 0
     """number of residual shapes, the last columns of the rows"""
     turning: Turning | None = None
     """transport of the modes by a turning body"""

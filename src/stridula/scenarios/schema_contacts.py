@@ -9,18 +9,18 @@ from ..contact import LAWS, STIFFNESSES, Coulomb, PointContact, RigidTrack, Surf
 from . import fields as is_
 from .derived import Keys, one_of, table_of
 from .schema_drives import History
-from .tables import Table
+from .tables import Table, number_or
 
 if TYPE_CHECKING:
     Friction = Any
     Stiffness = Any
+    StiffnessOfArea = Any
 else:
     Friction = one_of(
         "law", (table_of(law, "law", law.law, "law of friction", is_usual=law is Coulomb) for law in LAWS)
     )
-    Stiffness = one_of(
-        "kind", (table_of(kind, "kind", kind.kind, "linear, power law or hertz") for kind in STIFFNESSES)
-    )
+    _law = one_of("kind", (table_of(kind, "kind", kind.kind, "linear, power law or hertz") for kind in STIFFNESSES))
+    Stiffness, StiffnessOfArea = number_or(is_.Stiffness, _law), number_or(is_.StiffnessOfArea, _law)
 OF_AREA = "stiffness of the contact per unit of area: a number [N/m3] or a table, rigid if left out"
 YIELDS = "stiffness of the contact itself: a number [N/m] or a table, rigid if left out"
 
@@ -32,7 +32,7 @@ class PairContact(Table):
     """friction between tip and track"""
     gap: is_.Distance = PointContact.gap
     """distance between tip and track at the start [m]"""
-    stiffness: is_.Stiffness | Stiffness | None = None
+    stiffness: Stiffness | None = None
     """stiffness of the contact itself: a number [N/m] or a table, rigid if left out"""
     point: is_.Point = "tip"
     """point of the slider that touches: tip, root or a position from the tip [m]"""
@@ -130,7 +130,7 @@ else:
     }
     _friction = {"friction": (Friction | None, None, "friction between tip and track, none if left out")}
     _friction["surface"] = (str, "", "name of the surface to which the point belongs, which may lift off in part")
-    _friction["stiffness"] = (is_.Stiffness | Stiffness | None, None, YIELDS)
+    _friction["stiffness"] = (Stiffness | None, None, YIELDS)
     _plane = table_of(RigidTrack, "kind", "rigid", "axisymmetric, solid or rigid", title="Plane", after=_moved)
     _faces = {
         "name": (str, ..., "name in records, to which points add their numbers"),
@@ -140,7 +140,7 @@ else:
     }
     _layer = {
         "friction": _friction["friction"],
-        "stiffness": (is_.StiffnessOfArea | Stiffness | None, None, OF_AREA),
+        "stiffness": (StiffnessOfArea | None, None, OF_AREA),
         "overlay": (
             bool,
             False,

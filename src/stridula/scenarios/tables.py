@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Discriminator, GetJsonSchemaHandler,
 from pydantic_core import CoreSchema
 
 # Tags of unions without a key that distinguishes them; pydantic puts them into the paths of errors.
-TEXT, ONE, BY_NAME = "a text", "one table", "tables by name"
+TEXT, NUMBER, ONE, BY_NAME = FORMS = ("a text", "a number", "one table", "tables by name")
 
 
 class Table(BaseModel):
@@ -64,6 +64,11 @@ def text_or(table: Any) -> Any:
     return Annotated[Annotated[str, Tag(TEXT)] | Annotated[table, Tag(ONE)], Discriminator(_text_or_one)]
 
 
+def number_or(number: Any, table: Any) -> Any:
+    """Return the type of a number or a table."""
+    return Annotated[Annotated[number, Tag(NUMBER)] | Annotated[table, Tag(ONE)], Discriminator(_number_or_one)]
+
+
 def one_or_by_name(table: Any) -> Any:
     """Return the type of one table, or of tables by name."""
     several = Annotated[dict[str, table], Tag(BY_NAME)]
@@ -77,6 +82,10 @@ def holds_tables(value: Any) -> bool:
 
 def _text_or_one(value: Any) -> str:
     return TEXT if isinstance(value, str) else ONE
+
+
+def _number_or_one(value: Any) -> str:
+    return ONE if isinstance(value, (dict, BaseModel)) else NUMBER
 
 
 def _one_or_by_name(value: Any) -> str:
