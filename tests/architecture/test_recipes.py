@@ -1,4 +1,4 @@
-"""The recipe of CONTRIBUTING for a law of friction with a new curve, followed in a copy of the package."""
+"""Recipes of CONTRIBUTING for a law of friction, a probe and a verb, followed in a copy of the package."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
 import stridula
+
+Steps = Sequence[tuple[str, str, str]]
 
 LAW = '''"""Friction that falls with the inverse of the slip speed."""
 
@@ -55,8 +58,8 @@ class RationalWeakening(StaticAndKinetic):
 RATIO = """    if law.code == at.RATIONAL_WEAKENING:
         return table[row, KINETIC] + (table[row, STATIC] - table[row, KINETIC]) / (1.0 + speed / table[row, VELOCITY])
 """
-# The steps of the recipe: file, text there, text in its place.
-STEPS = (
+# The steps of a recipe: file, text there, text in its place.
+LAW_STEPS = (
     ("_kernels/layout.py", "LUGRE, AGING, SLIP = range(7)", "LUGRE, AGING, SLIP, RATIONAL_WEAKENING = range(8)"),
     (
         "_kernels/law_columns.py",
@@ -77,7 +80,7 @@ STEPS = (
     ),
     ("contact/laws.py", "    RateAndState,\n)", "    RateAndState,\n    RationalWeakening,\n)"),
 )
-SCRIPT = """
+LAW_SCRIPT = """
 import json
 import numpy as np
 import stridula as st
@@ -99,25 +102,166 @@ seen = run[next(name for name in run.data_vars if "displacement" in str(name))].
 again = st.load_scenario(run).system.contacts[0].friction
 print(json.dumps({"error": float(np.abs(seen - known).max() / np.ptp(known)), "read": again == law}))
 """
+PROBE = '''@dataclass(frozen=True)
+class Momentum(_Probe):
+    """Momentum of a body along a direction [kg m/s], centred difference over two steps.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    direction : {"x", "y", "z"}, optional
+        World direction.
+    """
+
+    quantity: ClassVar[str] = "momentum"
+    on: ClassVar[str] = "body"
+    body: Body
+    direction: Annotated[str, Choice(("x", "y", "z"))] = "x"
+
+    def __post_init__(self) -> None:
+        check_body(self.body)
+        check_declared(self)
+
+    @property
+    def place(self) -> str:
+        """Direction, as text."""
+        return self.direction
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """Keys of its table in a scenario, besides quantity and body."""
+        return {"direction": self.direction}
 
 
-def followed(folder: Path, steps) -> subprocess.CompletedProcess[str]:
-    """Follow the steps in a copy of the package and run the script there, without compilation."""
+Probe = (
+'''
+ROWS = """@_rows_of.register
+def _momentum_rows(
+    probe: Momentum, coordinates: Coordinates, loads: list[Load], direct: Array, contact: Array
+) -> ProbeRows:
+    matrix = np.zeros((3, coordinates.size))
+    matrix[1] = coordinates.translation(probe.body)["xyz".index(probe.direction)]
+    return ProbeRows(matrix, direct, contact)
+
+
+@_rows_of.register
+def _support_rows("""
+VARIABLE = """    "momentum": Variable("momentum", "kg m/s", "momentum of bodies", "low-pass"),
+    "support_force": """
+PROBE_STEPS = (
+    ("records/probes.py", "Probe = (\n", PROBE),
+    ("records/probes.py", "ModalVelocity | ModalMotion\n)", "ModalVelocity | ModalMotion | Momentum\n)"),
+    ("records/variables.py", '    "support_force": ', VARIABLE),
+    ("lowering/probe_rows.py", "import Probe, Reaction", "import Momentum, Probe, Reaction"),
+    ("lowering/probe_rows.py", "@_rows_of.register\ndef _support_rows(", ROWS),
+    ("records/__init__.py", "    ModalVelocity,\n", "    ModalVelocity,\n    Momentum,\n"),
+    ("records/__init__.py", '    "ModalVelocity",\n', '    "ModalVelocity",\n    "Momentum",\n'),
+    ("__init__.py", '        "ModalVelocity",\n', '        "ModalVelocity",\n        "Momentum",\n'),
+)
+PROBE_SCRIPT = """
+import json
+from pathlib import Path
+import numpy as np
+import stridula as st
+
+TOML = '''
+[bodies.block]
+kind = "point mass"
+mass = 2
+[[contacts]]
+tip = {body = "block"}
+track = {kind = "rigid"}
+[[drives]]
+kind = "initial velocity"
+body = "block"
+x = 0.5
+[simulation]
+duration = 0.02
+sample_rate = 1000
+probes = [{quantity = "velocity", body = "block", direction = "x"}, {quantity = "momentum", body = "block"}]
+'''
+Path("case.toml").write_text(TOML)
+body = st.PointMass(2.0, name="block")
+system = st.System(st.PointContact(body.centre, st.RigidTrack()), [st.InitialVelocity(body, x=0.5)])
+probes = [st.Velocity(body.centre, "x"), st.Momentum(body)]
+called = st.simulate(system, 0.02, sample_rate=1e3, probes=probes)
+loaded = st.load_scenario("case.toml").simulate()
+again = st.load_scenario(loaded).simulate()
+same = [bool(np.array_equal(run.momentum, called.momentum)) for run in (loaded, again)]
+ratio = called.momentum.values / called.velocity.values
+names, units = list(called.momentum_probe.values), called.momentum.attrs["units"]
+try:
+    st.load_scenario("case.toml", {"simulation.probes.1.direction": "w"})
+except st.ScenarioError as error:
+    refused = str(error)
+print(json.dumps({"same": same, "ratio": [ratio.min(), ratio.max()], "names": names, "units": units, "no": refused}))
+"""
+VERB = '''"""`stridula masses`: the masses of bodies."""
+
+from __future__ import annotations
+
+from ..scenarios.load import load_scenario
+
+
+def print_masses(name: str, digits: int) -> None:
+    """Print the mass of each body of a scenario [kg], in some digits."""
+    system = load_scenario(name).system
+    for body in system.bodies:
+        print(f"{system.body_name(body)} {body.total_mass:.{digits}g} kg")
+'''
+COMMAND = '''@app.command()
+def masses(
+    name: NameOrFile, digits: Annotated[int, typer.Option(metavar="N", help="Digits of each.")] = 3
+) -> None:
+    """Print the masses of the bodies of a scenario."""
+    from .masses import print_masses
+
+    print_masses(name, digits)
+
+
+@app.command()
+def export('''
+VERB_STEPS = (("cli/commands.py", "@app.command()\ndef export(", COMMAND),)
+VERB_SCRIPT = """
+import sys
+from stridula.cli import main
+
+sys.argv = ["stridula", *sys.argv[1:]]
+main()
+"""
+
+
+def copied(folder: Path, steps: Steps, added: dict[str, str] | None = None) -> None:
+    """Follow the steps in a copy of the package, with some files added."""
     package = folder / "stridula"
     shutil.copytree(Path(stridula.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__", "page"))
-    (package / "contact" / "rational_weakening.py").write_text(LAW)
+    for name, text in (added or {}).items():
+        (package / name).write_text(text, encoding="utf-8")
     for name, before, after in steps:
         text = (package / name).read_text(encoding="utf-8")
         assert text.count(before) == 1, (name, before)
         (package / name).write_text(text.replace(before, after), encoding="utf-8")
-    surroundings = os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(folder)}
-    return subprocess.run(
-        [sys.executable, "-c", SCRIPT], env=surroundings, cwd=folder, capture_output=True, text=True, timeout=600
-    )
+
+
+def ran(folder: Path, script: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run a script with the copy, without compilation."""
+    surroundings = os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(folder), "COLUMNS": "200"}
+    command = [sys.executable, "-c", script, *arguments]
+    return subprocess.run(command, env=surroundings, cwd=folder, capture_output=True, text=True, timeout=600)
+
+
+def without(steps: Steps, left_out: int) -> Steps:
+    return [step for number, step in enumerate(steps) if number != left_out]
+
+
+def with_law(folder: Path, steps: Steps) -> subprocess.CompletedProcess[str]:
+    copied(folder, steps, {"contact/rational_weakening.py": LAW})
+    return ran(folder, LAW_SCRIPT)
 
 
 def test_a_law_with_a_new_curve_marches_after_the_steps_of_the_recipe(tmp_path):
-    done = followed(tmp_path, STEPS)
+    done = with_law(tmp_path, LAW_STEPS)
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
     assert found["error"] < 1e-4
@@ -127,5 +271,40 @@ def test_a_law_with_a_new_curve_marches_after_the_steps_of_the_recipe(tmp_path):
 @pytest.mark.parametrize("left_out", [2, 3])
 def test_a_step_left_out_is_noticed(tmp_path, left_out):
     """Negative control: a law that nothing holds, or without a ratio of its own, does not march as it should."""
-    done = followed(tmp_path, [step for number, step in enumerate(STEPS) if number != left_out])
+    done = with_law(tmp_path, without(LAW_STEPS, left_out))
     assert done.returncode != 0 or json.loads(done.stdout)["error"] > 0.01
+
+
+def test_a_probe_arrives_in_the_record_after_the_steps_of_the_recipe(tmp_path):
+    copied(tmp_path, PROBE_STEPS)
+    done = ran(tmp_path, PROBE_SCRIPT)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["same"] == [True, True]
+    assert found["ratio"] == pytest.approx([2.0, 2.0], rel=1e-9)
+    assert (found["names"], found["units"]) == (["block x"], "kg m/s")
+    assert found["no"] == "simulation.probes.1.direction must be one of x, y, z, got 'w'"
+
+
+@pytest.mark.parametrize("left_out", [1, 2, 4])
+def test_a_probe_without_a_step_does_not_arrive(tmp_path, left_out):
+    """Negative control: a probe that is not entered, or has no variable or no rows."""
+    copied(tmp_path, without(PROBE_STEPS, left_out))
+    assert ran(tmp_path, PROBE_SCRIPT).returncode != 0
+
+
+def test_a_verb_answers_after_the_steps_of_the_recipe(tmp_path):
+    copied(tmp_path, VERB_STEPS, {"cli/masses.py": VERB})
+    done = ran(tmp_path, VERB_SCRIPT, "masses", "squeal", "--digits", "2")
+    assert done.returncode == 0, done.stderr
+    assert [line.split()[0] for line in done.stdout.splitlines()] == ["slider", "track"]
+    assert "Print the masses of the bodies of a scenario." in ran(tmp_path, VERB_SCRIPT, "--help").stdout
+    refused = ran(tmp_path, VERB_SCRIPT, "masses", "sqeal")
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert "did you mean 'squeal'?" in refused.stderr
+
+
+def test_a_verb_that_is_not_entered_is_unknown(tmp_path):
+    """Negative control."""
+    copied(tmp_path, (), {"cli/masses.py": VERB})
+    assert ran(tmp_path, VERB_SCRIPT, "masses", "squeal").returncode == 2

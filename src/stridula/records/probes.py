@@ -2,26 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Self, get_args
 
 from ..arrays import Array
 from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, is_track
 from ..bodies.modes import Body
 from ..checks import ArgumentError, choice, count, instance
-from ..declared import Way, check_declared
+from ..declared import Choice, CountFrom0, Way, check_declared
 from ..system import System
 
 DIRECTION = Way(("x", "y", "z", "axial", "transverse"))
+COMPONENTS = ("x", "y", "moment")
+
+
+class _Probe:
+    quantity: ClassVar[str]
+    # Kind of its first argument: point, body, or slider for that of the system.
+    on: ClassVar[str]
+
+    @classmethod
+    def from_table(cls, on: Any, **keys: Any) -> Self:
+        """Return the probe on a point or body with the other keys of its table in a scenario."""
+        made: Callable[..., Self] = cls
+        return made(on, **keys)
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """Keys of its table in a scenario, besides quantity and body."""
+        return {}
 
 
 @dataclass(frozen=True)
-class _Motion:
-    quantity: ClassVar[str]
+class _Motion(_Probe):
+    on: ClassVar[str] = "point"
     # Order of the time derivative of the displacement.
     derivative: ClassVar[int]
-    of_slider: ClassVar[bool] = False
     point: BodyPoint
     direction: Annotated[str | Sequence[float], DIRECTION] = "y"
 
@@ -51,7 +68,7 @@ class _Motion:
 
     @property
     def keys(self) -> dict[str, Any]:
-        """Keys of it in a scenario, besides quantity and body."""
+        """Keys of its table in a scenario, besides quantity and body."""
         place = self.point.position if self.point.point_name is None else self.point.point_name
         if hasattr(self.point.body, "mesh") or getattr(self.point.body, "faces", {}):
             # Such bodies are kept as modes.
@@ -67,7 +84,7 @@ class Displacement(_Motion):
     point : BodyPoint
         Point of the body.
     direction : {"y", "x", "z", "axial", "transverse"} or sequence of float, optional
-        World direction, along or across the body's own axis, or world components (x, y, z), of any length.
+        World x, y or z, the body's axial or transverse direction, or world components (x, y, z), of any length.
     """
 
     quantity = "displacement"
@@ -79,10 +96,8 @@ class Velocity(_Motion):
 
     Parameters
     ----------
-    point : BodyPoint
-        Point of the body.
-    direction : {"y", "x", "z", "axial", "transverse"} or sequence of float, optional
-        World direction, along or across the body's own axis, or world components (x, y, z), of any length.
+    point, direction : BodyPoint, str or sequence of float
+        As of `Displacement`.
     """
 
     quantity = "velocity"
@@ -94,10 +109,8 @@ class Acceleration(_Motion):
 
     Parameters
     ----------
-    point : BodyPoint
-        Point of the body.
-    direction : {"y", "x", "z", "axial", "transverse"} or sequence of float, optional
-        World direction, along or across the body's own axis, or world components (x, y, z), of any length.
+    point, direction : BodyPoint, str or sequence of float
+        As of `Displacement`.
     """
 
     quantity = "acceleration"
@@ -105,7 +118,7 @@ class Acceleration(_Motion):
 
 
 @dataclass(frozen=True)
-class Reaction:
+class Reaction(_Probe):
     """Force that the support of a slider's root exerts on it, along world x or y [N], or its moment [N m].
 
     Zero in a direction in which the root is free. The moment is positive when it increases the slope of the transverse
@@ -120,13 +133,18 @@ class Reaction:
     """
 
     quantity: ClassVar[str] = "reaction"
-    of_slider: ClassVar[bool] = True
+    on: ClassVar[str] = "slider"
     body: FiniteElementBeam
     component: str = "moment"
 
     def __post_init__(self) -> None:
         instance("body", self.body, FiniteElementBeam)
-        choice("component", self.component, ("x", "y", "moment"))
+        choice("component", self.component, COMPONENTS)
+
+    @classmethod
+    def from_table(cls, on: Any, **keys: Any) -> Self:
+        """Return the probe on a slider; its table names the component as direction."""
+        return cls(on, keys.get("direction", "moment"))
 
     @property
     def place(self) -> str:
@@ -135,12 +153,12 @@ class Reaction:
 
     @property
     def keys(self) -> dict[str, Any]:
-        """Keys of it in a scenario, besides the quantity."""
+        """Keys of its table in a scenario, besides the quantity."""
         return {"direction": self.component}
 
 
 @dataclass(frozen=True)
-class SupportForce:
+class SupportForce(_Probe):
     """Force along y that a modal beam exerts on the support of one of its ends [N]: the bridge force of a string.
 
     With the tension T it is ``T w' - EI w'''`` at the left end and ``EI w''' - T w'`` at the right end, positive
@@ -154,17 +172,17 @@ class SupportForce:
     body : ModalBeam
         The beam or string.
     end : {"left", "right"}, optional
-        End of the beam.
+        Left or right end of the beam.
     """
 
     quantity: ClassVar[str] = "support_force"
-    of_slider: ClassVar[bool] = False
+    on: ClassVar[str] = "body"
     body: ModalBeam
-    end: str = "left"
+    end: Annotated[str, Choice(("left", "right"))] = "left"
 
     def __post_init__(self) -> None:
         instance("body", self.body, ModalBeam)
-        choice("end", self.end, ("left", "right"))
+        check_declared(self)
 
     @property
     def place(self) -> str:
@@ -173,17 +191,16 @@ class SupportForce:
 
     @property
     def keys(self) -> dict[str, Any]:
-        """Keys of it in a scenario, besides quantity and body."""
+        """Keys of its table in a scenario, besides quantity and body."""
         return {"end": self.end}
 
 
 @dataclass(frozen=True)
-class _OfMode:
-    quantity: ClassVar[str]
+class _OfMode(_Probe):
+    on: ClassVar[str] = "body"
     derivative: ClassVar[int]
-    of_slider: ClassVar[bool] = False
     body: Body
-    mode: int
+    mode: CountFrom0
 
     def __post_init__(self) -> None:
         check_body(self.body)
@@ -196,7 +213,7 @@ class _OfMode:
 
     @property
     def keys(self) -> dict[str, Any]:
-        """Keys of it in a scenario, besides quantity and body."""
+        """Keys of its table in a scenario, besides quantity and body."""
         return {"mode": self.mode}
 
 
@@ -208,7 +225,7 @@ class ModalDisplacement(_OfMode):
     body : Body
         The body.
     mode : int
-        Number of the mode from 0, in the order of the body's `modes`; residual shapes come last.
+        Number of the mode from 0, by increasing frequency, residual shapes last.
     """
 
     quantity = "modal_displacement"
@@ -220,10 +237,8 @@ class ModalVelocity(_OfMode):
 
     Parameters
     ----------
-    body : Body
-        The body.
-    mode : int
-        Number of the mode from 0, in the order of the body's `modes`; residual shapes come last.
+    body, mode : Body and int
+        As of `ModalDisplacement`.
     """
 
     quantity = "modal_velocity"
@@ -231,7 +246,7 @@ class ModalVelocity(_OfMode):
 
 
 @dataclass(frozen=True)
-class ModalMotion:
+class ModalMotion(_Probe):
     """Velocities of all modes of a body [kg^(1/2) m/s], in single precision, from which `radiate` computes sound.
 
     Centred differences over two steps.
@@ -243,16 +258,11 @@ class ModalMotion:
     """
 
     quantity: ClassVar[str] = "modal_motion"
-    of_slider: ClassVar[bool] = False
+    on: ClassVar[str] = "body"
     body: Body
 
     def __post_init__(self) -> None:
         check_body(self.body)
-
-    @property
-    def keys(self) -> dict[str, Any]:
-        """Keys of it in a scenario, besides quantity and body."""
-        return {}
 
     def of_each(self, modes: int) -> list[ModalVelocity]:
         """Return a probe for each mode of its body."""
@@ -262,6 +272,7 @@ class ModalMotion:
 Probe = (
     Displacement | Velocity | Acceleration | Reaction | SupportForce | ModalDisplacement | ModalVelocity | ModalMotion
 )
+PROBES: tuple[type[Probe], ...] = get_args(Probe)
 
 
 def check_body(body: Any) -> None:

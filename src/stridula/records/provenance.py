@@ -349,5 +349,5 @@ def _drive(drive: Drive, system: System) -> dict[str, Any]:
 
 
 def _probe(probe: Probe, system: System) -> dict[str, Any]:
-    body = {} if probe.of_slider else {"body": system.body_name(probe.body)}
+    body = {} if probe.on == "slider" else {"body": system.body_name(probe.body)}
     return {"quantity": probe.quantity, **body, **{key: _value(value) for key, value in probe.keys.items()}}

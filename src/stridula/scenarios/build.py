@@ -37,17 +37,7 @@ from ..disk import is_there
 from ..drives import Drive
 from ..integration import GaussSeidel
 from ..ordinary import NotOrdinary
-from ..records import (
-    Acceleration,
-    Displacement,
-    ModalDisplacement,
-    ModalMotion,
-    ModalVelocity,
-    Probe,
-    Reaction,
-    SupportForce,
-    Velocity,
-)
+from ..records import Probe, probes
 from ..system import System
 from .build_meshed import axisymmetric_body, solid_body
 from .errors import ScenarioError
@@ -61,8 +51,7 @@ SHAPES: dict[str, Callable[..., Any]] = {section.shape: section for section in S
 DAMPINGS: dict[str, Callable[..., Any]] = {law.form: law for law in DAMPING_LAWS}
 HISTORIES: dict[str, Callable[..., Any]] = {history.kind: history for history in histories.HISTORIES}
 DRIVES: dict[str, type[Drive]] = {drive.kind: drive for drive in drives.DRIVES}
-OF_MODES = {one.quantity: one for one in (ModalDisplacement, ModalVelocity)}
-MOTIONS = {"displacement": Displacement, "velocity": Velocity, "acceleration": Acceleration}
+PROBES = {probe.quantity: probe for probe in probes.PROBES}
 FRICTIONS: dict[str, Callable[..., Any]] = {law.law: law for law in LAWS}
 STIFFNESS: dict[str, Callable[..., Any]] = {kind.kind: kind for kind in STIFFNESSES}
 CONNECTIONS: dict[str, Callable[..., Any]] = {connection.kind: connection for connection in connections.CONNECTIONS}
@@ -114,12 +103,12 @@ class Builder:
 
     def probes(self, system: System) -> tuple[Probe, ...] | None:
         """Return the probes, None for the default ones."""
-        declared = self.tables["simulation"].get("probes")
-        if declared is None:
+        tables = self.tables["simulation"].get("probes")
+        if tables is None:
             return None
-        probes = [self._probe(number, table, system) for number, table in enumerate(declared)]
+        built = tuple(self._probe(number, dict(table), system) for number, table in enumerate(tables))
         self._stop_at_problems()
-        return tuple(probes)
+        return built
 
     def contact_solve(self) -> GaussSeidel | None:
         """Return the solver of several contacts, None for the default."""
@@ -434,19 +423,16 @@ class Builder:
 
     def _probe(self, number: int, table: Tables, system: System) -> Any:
         path = ("simulation", "probes", number)
+        made = PROBES[table.pop("quantity")]
+        on = system.slider if made.on == "slider" else self._probed(path, made.on, table)
         with self._within(*path):
-            if table["quantity"] == "reaction":
-                return Reaction(system.slider, table.get("direction", "moment"))
-            name = table.get("body") or ("track" if "track" in self.bodies else "slider")
-            body = self._named_body((*path, "body"), name)
-            if table["quantity"] == "support_force":
-                return SupportForce(body, table.get("end", "left"))
-            if table["quantity"] == ModalMotion.quantity:
-                return ModalMotion(body) if body is not None else None
-            if table["quantity"] in OF_MODES:
-                return OF_MODES[table["quantity"]](body, table["mode"]) if body is not None else None
-            point = self._point((*path, "point"), body, table.get("point"), "tip")
-            return MOTIONS[table["quantity"]](point, table.get("direction", "y"))
+            return made.from_table(on, **table)
+
+    def _probed(self, path: Place, on: str, table: Tables) -> Any:
+        """Return the body or the point that a probe is on, its first argument."""
+        name = table.pop("body", None) or ("track" if "track" in self.bodies else "slider")
+        body = self._named_body((*path, "body"), name)
+        return self._point((*path, "point"), body, table.pop("point", None), "tip") if on == "point" else body
 
     def _named_body(self, path: Place, name: str) -> Any:
         if name not in self.bodies:

@@ -37,7 +37,7 @@ class Derived(Table):
 def table_of(
     description: type,
     tag: str = "",
-    word: str = "",
+    word: str | tuple[str, ...] = "",
     text: str = "",
     *,
     title: str = "",
@@ -51,9 +51,9 @@ def table_of(
     ----------
     description : type
         The dataclass.
-    tag, word, text : str, optional
-        Key that distinguishes several kinds of tables, its value for this kind, and its description; empty if there
-        is only one kind.
+    tag, word, text : str or tuple of str, optional
+        Key that distinguishes several kinds of tables, its value or values for this kind, and its description; empty
+        if there is only one kind.
     title : str, optional
         Title in the schema, by default the name of the dataclass.
     is_usual : bool, optional

@@ -3,64 +3,17 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
 from ..integration import GaussSeidel
-from ..records.probes import DIRECTION
 from . import fields as is_
-from .kinds import Read
 from .schema_bodies import Body, Material, Section, Slider, Track
 from .schema_contacts import Connection, Contact, Friction, PairContact, Surface
 from .schema_drives import Drive
+from .schema_probes import Probe
 from .tables import Table
-
-
-class Motion(Table):
-    quantity: Literal["displacement", "velocity", "acceleration"]
-    """displacement, velocity, acceleration, reaction, support_force or modal_displacement, _velocity or _motion"""
-    body: str | None = None
-    """body: slider, track or its name; the track if left out, the slider on a rigid track"""
-    point: is_.Point | None = None
-    """point: tip, root, centre, the name of a point or a position [m]; centre or tip if left out"""
-    direction: Annotated[Any, Read(DIRECTION)] = "y"
-    """x, y, z in space, axial, transverse, or world components [x, y, z]"""
-
-
-class Reaction(Table):
-    quantity: Literal["reaction"]
-    """displacement, velocity, acceleration, reaction, support_force or modal_displacement, _velocity or _motion"""
-    direction: Literal["x", "y", "moment"] = "moment"
-    """x, y or moment"""
-
-
-class SupportForce(Table):
-    quantity: Literal["support_force"]
-    """displacement, velocity, acceleration, reaction, support_force or modal_displacement, _velocity or _motion"""
-    body: str | None = None
-    """modal beam: track or its name; the track if left out, the slider on a rigid track"""
-    end: Literal["left", "right"] = "left"
-    """left or right"""
-
-
-class MotionOfMode(Table):
-    quantity: Literal["modal_displacement", "modal_velocity"]
-    """displacement, velocity, acceleration, reaction, support_force or modal_displacement, _velocity or _motion"""
-    body: str | None = None
-    """body: slider, track or its name; the track if left out, the slider on a rigid track"""
-    mode: is_.CountFrom0
-    """number of the mode from 0, by increasing frequency, residual shapes last"""
-
-
-class MotionOfBody(Table):
-    quantity: Literal["modal_motion"]
-    """displacement, velocity, acceleration, reaction, support_force or modal_displacement, _velocity or _motion"""
-    body: str | None = None
-    """body: slider, track or its name; the track if left out, the slider on a rigid track"""
-
-
-Probe = Annotated[Motion | Reaction | SupportForce | MotionOfMode | MotionOfBody, Field(discriminator="quantity")]
 
 
 class ContactSolve(Table):
