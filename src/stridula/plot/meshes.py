@@ -57,17 +57,7 @@ def meshes(meshes: Mapping[str, MeshPart | SolidMesh], *, view: tuple[float, flo
 
 
 class MeshDrawing(SpaceSketch):
-    """Drawing of meshes.
-
-    Parameters
-    ----------
-    shown : list of ShownBody
-        The meshes.
-    view : tuple of float
-        Elevation and azimuth of the eye [rad].
-    title : str
-        Title.
-    """
+    """Drawing of meshes, with a title; other arguments as of `SpaceSketch`."""
 
     def __init__(self, shown: list[ShownBody], view: tuple[float, float], title: str) -> None:
         super().__init__(shown, view)

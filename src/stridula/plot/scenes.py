@@ -126,23 +126,17 @@ class Scene(Stage):
 
     Parameters
     ----------
-    figure : matplotlib.figure.Figure
-        The figure.
-    room : tuple of float
-        Area in the figure: left and lower edge, width and height, as shares of the figure.
+    figure, room, view : Figure and tuples of float
+        As of `Stage`.
     system : System
         The system.
     motion : ModalMotion
         Motion of its modes.
     exaggeration : float
         Factor by which departures from the mean are drawn larger.
-    view : tuple of float
-        Elevation and azimuth of the eye [rad].
 
     Attributes
     ----------
-    axes : mpl_toolkits.mplot3d.axes3d.Axes3D
-        The axes.
     sides : Poly3DCollection
         The polygons of all bodies.
     markers : dict

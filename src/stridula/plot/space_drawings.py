@@ -42,22 +42,7 @@ ARC = 0.35 * np.pi
 
 
 class SpaceDrawing(SpaceSketch):
-    """Drawing of a system in space before its run.
-
-    Parameters
-    ----------
-    system : System
-        The system.
-    view : tuple of float
-        Elevation and azimuth of the eye [rad].
-    title : str
-        Title.
-
-    Attributes
-    ----------
-    figure : matplotlib.figure.Figure
-        The figure.
-    """
+    """Drawing of a system in space before its run, with a title; other arguments as of `SpaceSketch`."""
 
     def __init__(self, system: System, view: tuple[float, float], title: str) -> None:
         check_surfaces(system)
