@@ -40,6 +40,23 @@ TextFile = Annotated[
     str | None, typer.Option("--out", metavar="FILE", help="Write to a file, in UTF-8, instead of printing.")
 ]
 
+Record = Annotated[str, typer.Argument(metavar="RUN.nc", help="A record.")]
+Set = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change a value, given by its full key or any unique ending of it; may be repeated.",
+    ),
+]
+Duration = Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")]
+SlipVelocity = Annotated[
+    str | None,
+    typer.Option(
+        metavar="M/S", help="Slip velocity where nothing prescribes it; one for each contact, separated by commas."
+    ),
+]
+
 # Options shared by the commands that compute many points.
 Vary = Annotated[
     list[str] | None,
@@ -57,6 +74,7 @@ SetEverywhere = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point; may be repeated."),
 ]
+Workers = Annotated[int | None, typer.Option(metavar="N", help="Parts computed at a time.")]
 Scheduler = Annotated[
     str | None,
     typer.Option(metavar="ADDRESS", help="Compute on other machines through a dask scheduler, tcp://host:port."),
@@ -130,15 +148,8 @@ def schema(out: TextFile = None) -> None:
 @app.command()
 def run(
     name: NameOrFile,
-    set_: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Change a value, given by its full key or any unique ending of it; may be repeated.",
-        ),
-    ] = None,
-    duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
+    set_: Set = None,
+    duration: Duration = None,
     out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the record, as NetCDF.")] = None,
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw the record; the file extension gives the format.")
@@ -162,7 +173,7 @@ def run(
 
 @app.command()
 def sound(
-    record: Annotated[str, typer.Argument(metavar="RUN.nc", help="A record.")],
+    record: Record,
     listener: Annotated[
         list[str] | None,
         typer.Option(
@@ -216,7 +227,7 @@ def sweep(
     seed: SampleSeed = None,
     points: PointsFile = None,
     set_: SetEverywhere = None,
-    duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
+    duration: Duration = None,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw a map of the regimes over two keys.")] = None,
     workers: Annotated[
         int | None, typer.Option(metavar="N", help="Parts computed at a time; default: one per processor.")
@@ -256,12 +267,7 @@ def survey(
     highest: Annotated[
         str | None, typer.Option(metavar="HZ", help="Count modes above this frequency, but do not simulate them.")
     ] = None,
-    velocity: Annotated[
-        str | None,
-        typer.Option(
-            metavar="M/S", help="Slip velocity where nothing prescribes it; one for each contact, separated by commas."
-        ),
-    ] = None,
+    velocity: SlipVelocity = None,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw a map of squeal over two keys.")] = None,
     table: Annotated[
         str | None, typer.Option(metavar="FILE.csv", help="Write a row for each mode of each point.")
@@ -300,14 +306,7 @@ def survey(
 @app.command()
 def stability(
     name: NameOrFile,
-    set_: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Change a value, given by its full key or any unique ending of it; may be repeated.",
-        ),
-    ] = None,
+    set_: Set = None,
     status: Annotated[
         str | None,
         typer.Option(
@@ -315,12 +314,7 @@ def stability(
             help="Status of the contacts: sliding, sticking or separated; one for each, separated by commas.",
         ),
     ] = None,
-    velocity: Annotated[
-        str | None,
-        typer.Option(
-            metavar="M/S", help="Slip velocity where nothing prescribes it; one for each contact, separated by commas."
-        ),
-    ] = None,
+    velocity: SlipVelocity = None,
     vary: Annotated[
         str | None,
         typer.Option(
@@ -391,7 +385,7 @@ def mesh(
 
 @app.command()
 def export(
-    record: Annotated[str, typer.Argument(metavar="RUN.nc", help="A record.")],
+    record: Record,
     out: Annotated[str, typer.Option(metavar="FILE", help="Table to write: .csv or .mat.")],
 ) -> None:
     """Write a record as a table for other programs."""
@@ -433,7 +427,7 @@ def calibrate_(
         ),
     ],
     set_: SetEverywhere = None,
-    duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
+    duration: Duration = None,
     population: Annotated[int, typer.Option(metavar="N", help="Parameter sets in each generation.")] = 32,
     generations: Annotated[int, typer.Option(metavar="N", help="Largest number of generations.")] = 50,
     seed: Annotated[int, typer.Option(metavar="S", help="Seed of the search.")] = 0,
@@ -441,7 +435,7 @@ def calibrate_(
     search: Annotated[
         str | None, typer.Option(metavar="FILE", help="Keep the search, NetCDF; the same command resumes it.")
     ] = None,
-    workers: Annotated[int | None, typer.Option(metavar="N", help="Parts computed at a time.")] = None,
+    workers: Workers = None,
 ) -> int:
     """Search for parameters whose run meets given targets; exit with 1 if a target is not met."""
     from .points import ranges_of
@@ -477,13 +471,13 @@ def sensitivity_(
         typer.Option(metavar="NAME", help="A measure of each run; default: the regime; may be repeated."),
     ] = None,
     set_: SetEverywhere = None,
-    duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
+    duration: Duration = None,
     samples: Annotated[
         int, typer.Option(metavar="N", help="Base samples, a power of 2; N (parameters + 2) runs are computed.")
     ] = 256,
     seed: Annotated[int, typer.Option(metavar="S", help="Seed of the points.")] = 0,
     out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the indices, as NetCDF.")] = None,
-    workers: Annotated[int | None, typer.Option(metavar="N", help="Parts computed at a time.")] = None,
+    workers: Workers = None,
     yes: ManyPoints = False,
 ) -> None:
     """Rank uncertain parameters by their effect, and print the probability of each regime."""
