@@ -119,6 +119,7 @@ def test_impossible_changes_are_explained(overrides, message):
 def test_the_schema_knows_every_key_and_forbids_others():
     schema = st.scenario_schema()
     assert "required" not in str(schema)
+    assert "'unit'" not in str(schema)
     assert set(schema["properties"]) >= {"base", "slider", "track", "contact", "drives", "simulation"}
     slider = schema["$defs"]["Slider"]
     assert slider["additionalProperties"] is False

@@ -68,7 +68,8 @@ class Varied:
         value = plain_value(value)
         words = outline.words(self.node)
         is_number = isinstance(value, Real) and not isinstance(value, bool)
-        if is_number and not math.isfinite(value):
+        number = parts(value) if is_number else None
+        if number is not None and not math.isfinite(number[0]):
             raise ScenarioError([f"{self.full} must be finite, got {shown(value)}"])
         if self.unit is not None:
             try:

@@ -287,8 +287,8 @@ def _plain(key: str, given: Values) -> list[Any]:
         raise ArgumentError("key", "be a text", key)
     plain = [plain_python(value) for value in given]
     for value in plain:
-        if isinstance(value, Real) and not math.isfinite(value):
-            raise ArgumentError(key, "be finite", value)
+        if isinstance(value, Real) and not isinstance(value, bool):
+            finite(key, value)
     return plain
 
 
