@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import stridula
+from stridula._kernels.law_columns import CODES
 
 Steps = Sequence[tuple[str, str, str]]
 
@@ -31,10 +32,10 @@ from .friction_law import StaticAndKinetic
 
 
 @dataclass(frozen=True)
-class RationalWeakening(StaticAndKinetic):
+class TrialWeakening(StaticAndKinetic):
     """Friction ``kinetic + (static - kinetic) / (1 + |v| / velocity)``."""
 
-    law: ClassVar[str] = "rational weakening"
+    law: ClassVar[str] = "trial weakening"
     static: Coefficient
     kinetic: Coefficient
     velocity: Speed
@@ -53,41 +54,51 @@ class RationalWeakening(StaticAndKinetic):
         return self.kinetic + (self.static - self.kinetic) / (1.0 + np.abs(velocity) / self.velocity)
 
     def __str__(self) -> str:
-        return f"rational, {self.static:.4g} to {self.kinetic:.4g} over {self.velocity:.3g} m/s"
+        return f"trial, {self.static:.4g} to {self.kinetic:.4g} over {self.velocity:.3g} m/s"
 '''
-RATIO = """    if law.code == at.RATIONAL_WEAKENING:
+RATIO = """    if law.code == at.TRIAL_WEAKENING:
         return table[row, KINETIC] + (table[row, STATIC] - table[row, KINETIC]) / (1.0 + speed / table[row, VELOCITY])
+"""
+SCALE = """    if law.code == at.TRIAL_WEAKENING:
+        return table[row, VELOCITY]
+"""
+END = """    if law.code == at.LINEAR_WEAKENING:
+        return table[row, END]
 """
 # The steps of a recipe: file, text there, text in its place.
 LAW_STEPS = (
-    ("_kernels/layout.py", "LUGRE, AGING, SLIP = range(7)", "LUGRE, AGING, SLIP, RATIONAL_WEAKENING = range(8)"),
+    (
+        "_kernels/layout.py",
+        f" = range({len(CODES)})\n# In place of the law",
+        f", TRIAL_WEAKENING = range({len(CODES) + 1})\n# In place of the law",
+    ),
     (
         "_kernels/law_columns.py",
         '    "SLIP": _RATE_AND_STATE,\n',
-        '    "SLIP": _RATE_AND_STATE,\n    "RATIONAL_WEAKENING": _WEAKENING,\n',
+        '    "SLIP": _RATE_AND_STATE,\n    "TRIAL_WEAKENING": _WEAKENING,\n',
     ),
-    ("_kernels/law_columns.py", '_STICKS = {"COULOMB", ', '_STICKS = {"COULOMB", "RATIONAL_WEAKENING", '),
+    ("_kernels/law_columns.py", '_STICKS = {"COULOMB", ', '_STICKS = {"COULOMB", "TRIAL_WEAKENING", '),
     ("_kernels/friction.py", "    if law.code == at.STRIBECK:\n", RATIO + "    if law.code == at.STRIBECK:\n"),
     (
         "_kernels/friction.py",
-        "law.code == at.STRIBECK or law.code == at.LUGRE",
-        "law.code in (at.STRIBECK, at.LUGRE, at.RATIONAL_WEAKENING)",
+        END,
+        SCALE + END,
     ),
     (
         "contact/laws.py",
         "from .rate_and_state",
-        "from .rational_weakening import RationalWeakening\nfrom .rate_and_state",
+        "from .trial_weakening import TrialWeakening\nfrom .rate_and_state",
     ),
-    ("contact/laws.py", "    RateAndState,\n)", "    RateAndState,\n    RationalWeakening,\n)"),
+    ("contact/laws.py", "    RateAndState,\n", "    RateAndState,\n    TrialWeakening,\n"),
 )
 LAW_SCRIPT = """
 import json
 import numpy as np
 import stridula as st
 from scipy.integrate import solve_ivp
-from stridula.contact.rational_weakening import RationalWeakening
+from stridula.contact.trial_weakening import TrialWeakening
 
-law, mass, stiffness, load, belt = RationalWeakening(0.5, 0.3, 0.2), 1.0, 4e3, 10.0, 1.0
+law, mass, stiffness, load, belt = TrialWeakening(0.5, 0.3, 0.2), 1.0, 4e3, 10.0, 1.0
 body = st.PointMass(mass, name="mass")
 contact = st.PointContact(body.centre, st.RigidTrack(velocity=belt), friction=law)
 drives = [st.Force(body.centre, y=-load), st.InitialVelocity(body, x=0.3)]
@@ -256,7 +267,7 @@ def without(steps: Steps, left_out: int) -> Steps:
 
 
 def with_law(folder: Path, steps: Steps) -> subprocess.CompletedProcess[str]:
-    copied(folder, steps, {"contact/rational_weakening.py": LAW})
+    copied(folder, steps, {"contact/trial_weakening.py": LAW})
     return ran(folder, LAW_SCRIPT)
 
 

@@ -15,6 +15,7 @@ from stridula._kernels import layout as at
 from stridula._kernels.contact_values import Law
 from stridula._kernels.law_columns import CODES, LAW_COLUMNS, NEW_STATE, PARAMETERS
 from stridula.contact import LAWS
+from stridula.lowering.own_laws import check_law, law_of_march
 from stridula.scenarios.schema import json_schema
 
 NAN, INF = float("nan"), float("inf")
@@ -143,6 +144,19 @@ def test_declared_properties_of_laws_agree_with_the_march(law):
     assert law.depends_on_speed == (slow != fast)
     assert law.linearised_at(0.1).slope == 0.0 or law.depends_on_speed
     assert (law.state_in_sliding(0.1) == law.state_in_sliding(0.2)) != law.has_state
+
+
+@pytest.mark.parametrize("law", every_law(), ids=str)
+def test_the_march_has_the_formulas_of_the_law(law):
+    """Those of the package are marched unchecked; the check of a law from outside finds no difference either."""
+    outside = type("Outside", (type(law),), {})
+    check_law(outside(**{field.name: getattr(law, field.name) for field in fields(law)}))
+
+
+@pytest.mark.parametrize("law", [law for law in every_law() if law.set_valued and law.depends_on_speed], ids=str)
+def test_a_law_bends_within_its_reach(law):
+    code, numbers = law_of_march(law)
+    assert 0.1 * law.reach <= friction.speed_scale(code, numbers[None], 0, 0.0) <= law.reach
 
 
 @pytest.mark.parametrize("law", [law for law in every_law() if law.has_state], ids=str)

@@ -47,8 +47,8 @@ class PointContact:
         revolution.
     at : float, optional
         Abscissa of the tip on the track at the start [m]; strictly between the ends of a beam or of a plate's line.
-    friction : Coulomb, StaticKinetic, Stribeck, ExponentialWeakening, LinearWeakening, LuGre or RateAndState, optional
-        Friction law; no friction if left out.
+    friction : FrictionLaw, optional
+        Friction law, such as `Coulomb` or `Stribeck`; no friction if left out.
     gap : float, optional
         Distance between tip and track at the start [m].
     inclination : float, optional

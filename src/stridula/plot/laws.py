@@ -22,8 +22,8 @@ def friction(law: FrictionLaw, velocities: Array | Sequence[float] | None = None
 
     Parameters
     ----------
-    law : Coulomb, StaticKinetic, Stribeck, ExponentialWeakening, LinearWeakening, LuGre or RateAndState
-        The law.
+    law : FrictionLaw
+        A law of the package or of a class derived from one, such as `Coulomb` or `Stribeck`.
     velocities : array_like, optional
         Slip velocities at which to draw it [m/s], of either or both signs; if left out, a range that covers the law.
 
