@@ -23,7 +23,7 @@ from .disk import read, write
 
 FOLDER, OFF = "STRIDULA_CACHE_DIR", "off"
 ENDING = ".kept"
-# Most bytes of all files together, and bytes of the digest at the beginning of a file.
+# Largest size of all files together, and size of the digest at the beginning of a file [bytes].
 MOST, DIGEST = 500_000_000, 16
 
 
@@ -43,7 +43,7 @@ def key(parts: Iterable[bytes]) -> str:
     """Return the name of an entry: a digest of everything that its content depends on."""
     found = hashlib.blake2b(digest_size=DIGEST)
     for part in parts:
-        # With its length, so that the same bytes divided otherwise differ.
+        # The length is included, so that the same bytes give another key if they are divided differently.
         found.update(len(part).to_bytes(8, "little") + part)
     return found.hexdigest()
 

@@ -12,13 +12,13 @@ from .arrays import Array
 
 # Largest width and height of a drawing, its least height, and the margin [px].
 WIDTH, HEIGHT, LOWEST, ROOM = 260.0, 180.0, 24.0, 8.0
-# Visible on light and on dark pages.
+# The colour is visible on light and on dark pages.
 TOUCH = "#e8743b"
 # Elevation above the plane across y and azimuth from z towards x [rad].
 VIEW = (np.pi / 6.0, 7.0 * np.pi / 36.0)
-# Cosine of the angle between two polygons below which the edge between them is drawn, and the most edges drawn.
+# The edge between two polygons is drawn if the cosine of their angle is below this; largest number of edges drawn.
 CREASE, MOST_EDGES = 0.9, 3000
-# Most lines of a list that are shown.
+# Largest number of lines of a list that are shown.
 MOST_LINES = 8
 
 

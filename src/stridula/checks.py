@@ -16,7 +16,7 @@ STATUS_WORDS = ("separated", "sticking", "sliding")
 LONGEST = 80
 # Longest list of names in a message, unless the first name alone is longer.
 LONGEST_LIST = 160
-# A turn [rad], beyond rounding.
+# A turn [rad], with a margin for rounding.
 WHOLE_TURN = 2.0 * math.pi * (1.0 + 1e-9)
 _UNSAID: Any = object()
 
@@ -73,7 +73,7 @@ def _argument_error(argument: str, allowed: str, value: Any, got: str, where: st
 
 def finite(name: str, value: Any) -> float:
     """Return `value` as a float if it is a finite real number."""
-    # The check for a Real takes ten times as long.
+    # It is tested first since the check for a Real takes ten times as long.
     if type(value) is not float and (isinstance(value, bool) or not isinstance(value, Real)):
         raise ArgumentError(name, "be a number", value)
     if not _is_finite(value):

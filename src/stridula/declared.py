@@ -199,7 +199,7 @@ class Own:
 
 
 Kind = Number | Choice | Each | OneOrEach | NumberOrWord | Way | Whole | Text | Own
-# Kinds whose checked value replaces the given one: sequences become tuples, NumPy numbers Python numbers.
+# Kinds whose checked value replaces the given one: sequences become tuples, and NumPy numbers become Python numbers.
 _KEPT = (Each, OneOrEach, NumberOrWord, Way)
 
 

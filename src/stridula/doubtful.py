@@ -8,13 +8,14 @@ import warnings
 from collections.abc import Iterable
 from pathlib import Path
 
-# From soft rubber to diamond [Pa]; a value between the other and the lower one is probably in MPa: aluminium has 7e4.
+# Range from soft rubber to diamond [Pa]. A value between the last number and the lower end of the range is probably in
+# MPa: that of aluminium is 7e4.
 MODULUS, MEGA = (1e6, 2e12), 2e3
 # Size of a body [m] above which it is probably in millimetres.
 LARGEST_SIZE = 50.0
-# Distance of a face from its track, as a share of its size, from which it is probably misplaced.
+# A face farther from its track than this share of its size is probably misplaced.
 FARTHEST = 0.05
-# Files whose frames a warning passes over: this package, code made by dataclasses, decorators.
+# Files whose frames a warning skips: this package, and the code of dataclasses and of decorators.
 _PASSED = (str(Path(__file__).parent), "<", contextlib.__file__)
 
 

@@ -13,9 +13,10 @@ from .arrays import Array
 from .checks import ArgumentError, brief, finite, within_a_turn
 from .declared import Angle, Each, Frequency, Number, Ratio, Time, check_declared
 
-# Relative distance within which a time counts as that of a jump: steps divide a time exactly only up to rounding.
+# A time this close to a jump, relative to it, counts as that of the jump: steps divide a time exactly only up to
+# rounding.
 ROUND_OFF = 1e-12
-# Most points that the text of a history contains.
+# Largest number of points in the text of a history.
 FEW = 8
 
 

@@ -16,7 +16,8 @@ from typing import TypeVar
 Result = TypeVar("Result")
 
 LOGGER = logging.getLogger("stridula")
-# Called with the name of a task, the amount done and the total, 0 if it is not known; and with None when it is done.
+# A function that is called with the name of a task, the amount done and the total (0 if unknown), and with None when
+# the task is done.
 Tell = Callable[[str | None, int, int], None]
 _PRESENT: ContextVar[str] = ContextVar("present", default="")
 _GIVEN_UP: ContextVar[threading.Event | None] = ContextVar("given_up", default=None)

@@ -11,9 +11,10 @@ import numpy as np
 
 from .checks import ArgumentError
 
-# A hundred times the modes of a track in the audible range: a step with so many takes a tenth of a millisecond.
+# A hundred times the number of modes of a track in the audible range: a step with so many takes a tenth of a
+# millisecond.
 MOST_MODES = 50_000
-# Modes coupled by springs and dashpots are marched with dense matrices.
+# Modes coupled by springs and dashpots need dense matrices in the march.
 MOST_COUPLED_MODES = 4000
 
 

@@ -68,7 +68,7 @@ def origins_of(
     """
     found, left = dict(known), list(joints)
     while left:
-        # A group without a joint to a placed thing starts where it would be alone.
+        # A group without a joint to a placed thing starts at the place that it would have alone.
         ready = (
             k
             for k, one in enumerate(left)

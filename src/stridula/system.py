@@ -84,7 +84,7 @@ class System:
         found = []
         for face in self.faces:
             gap = min(one.gap for one in face.contacts)
-            # Places of points are slower to find.
+            # Places of points are needed only with a gap, and finding them takes longer.
             size = float(np.ptp(face.places, axis=0).max()) if gap > 0.0 else 0.0
             found += [f"{face.name}: {words}" for words in doubts_of_gap(gap, size)]
         return found

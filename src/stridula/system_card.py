@@ -14,9 +14,9 @@ from .lines import outlines_of
 
 # Length to which a rigid track is drawn to either side of a tip, as a share of the extent of the bodies.
 REACH = 0.25
-# Most lines for parts of a kind in the text of a system.
+# Largest number of lines for parts of one kind in the text of a system.
 MOST_LINES = 6
-# Largest gap that is due to rounding [m].
+# Largest gap that may be due to rounding [m].
 CLOSED = 1e-12
 
 

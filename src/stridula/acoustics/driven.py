@@ -1,9 +1,9 @@
 """Accelerations of the modes of a track, driven again by the recorded forces at the recorded places.
 
-The march gives a mode one impulse in each step and moves it exactly between them. A record has their sum over each
-sample interval H, so the recurrence of the exact modal scheme at H, ``q[n+1] = a q[n] - b q[n-1] + c H f[n]``, has
-every natural frequency and every decay exact, and is the motion of the march itself where each step is a sample. Two
-corrections remain:
+The march gives a mode one impulse in each step and moves it exactly between them. A record holds the sum of the
+impulses over each sample interval H. The recurrence of the exact modal scheme with step H, ``q[n+1] = a q[n] - b q[n-1]
++ c H f[n]``, therefore reproduces every natural frequency and decay; if each step is a sample, it reproduces the march.
+Two corrections remain:
 
 - The mean over R steps lowers the force at the frequency f by ``sin(pi f H) / (R sin(pi f H / R))``; a short symmetric
   filter raises it again, up to 5/12 of the sample rate.

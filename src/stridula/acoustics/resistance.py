@@ -49,7 +49,8 @@ def radiation_efficiency(track: ModalBeam | ModalPlate, frequency: float | Array
     panel = panel_of(track)
     given = np.atleast_1d(np.asarray(frequency, dtype=float))
     if given.shape not in ((1,), panel.angular_frequency.shape):
-        raise ArgumentError("frequency", f"be one number or {panel.angular_frequency.size}", frequency, got=given.size)
+        words, got = f"be one number or a list of {panel.angular_frequency.size}", f"a list of {given.size}"
+        raise ArgumentError("frequency", words, frequency, got=got)
     longest, area = max(panel.length, panel.width), panel.length * panel.width
     highest = air.speed * min(MOST_WAVES / longest, float(np.sqrt(MOST_WAVES / area)))
     for value in given:

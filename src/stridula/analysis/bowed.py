@@ -15,15 +15,15 @@ from .status_changes import slips
 
 MOTIONS = ("Helmholtz", "double slip", "multiple slip", "anomalous low", "raucous", "sticking", "sliding")
 HELMHOLTZ, DOUBLE, MULTIPLE, LOW, RAUCOUS, STICKING, SLIDING = MOTIONS
-# Fraction of the record ignored by default, the attack of a note.
+# Fraction of the record that is ignored by default: the attack of a note.
 ATTACK = 0.5
-# Time steps up to which a stick or a slip may be noise.
+# Sticks and slips that last at most this number of time steps may be noise.
 NOISY_STEPS = 2.0
-# Periods within which successive slips count as one.
+# Successive slips that are less than this number of periods apart count as one.
 SHORTEST_CYCLE = 0.25
 # Largest number of slips in a repeating pattern.
 LONGEST_PATTERN = 6
-# Slips per period: bounds between fewer than one and one, one and two, two and more.
+# Numbers of slips per period at which the count changes from less than one to one, to two, and to more.
 FEW, MANY, SEVERAL = 0.75, 1.5, 2.5
 
 

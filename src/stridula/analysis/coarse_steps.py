@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from ..checks import listed
 
-# Steps in a cycle, a contact or a stick below which the step is coarse.
+# A time step is coarse if a cycle, a contact or a stick lasts less than this number of steps.
 FEWEST = 10.0
 
 
@@ -23,7 +23,7 @@ def coarse(found: Mapping[str, float | str], step: float) -> str:
     frequency, impacts, slips, separated, sticking = (
         float(found[name]) for name in ("frequency", "impact_rate", "slip_rate", "separated", "sticking")
     )
-    # Mean lasting of each [s].
+    # Mean duration of each event [s].
     events = {}
     if frequency > 0.0:
         events["period"] = 1.0 / frequency

@@ -19,9 +19,9 @@ from ..records.probes import Displacement
 from ..records.variables import described
 from ..system import System
 
-# Points of the frequencies that are chosen, evenly on a logarithmic scale from half the lowest mode to the highest.
+# Number of default frequencies, spaced evenly on a logarithmic scale from half the lowest mode to the highest.
 POINTS = 800
-# Where each peak is seen, in half-widths about its mode; half-width of one without damping, over its frequency.
+# Points at each peak, in half-widths from its mode; half-width of a mode without damping, relative to its frequency.
 PEAK, SHARP = np.array([-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0]), 1e-3
 
 

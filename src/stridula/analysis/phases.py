@@ -13,7 +13,7 @@ from .signals import checked_intervals, record_of_one
 
 SMOOTHING = 5e-3
 SHORTEST_STOP = 20e-3
-# Share of a sample up to which a status may result from rounding.
+# A status with a smaller share of a sample may result from rounding.
 ROUND_OFF = 1e-9
 
 

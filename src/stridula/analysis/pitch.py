@@ -11,21 +11,22 @@ import numpy as np
 from ..arrays import Array
 from ..weighting import a_weighting
 
-# Lowest frequency of a spectrum, in lowest tones.
+# Lowest frequency of a spectrum, relative to the lowest tone.
 BELOW = 0.75
-# Fewest samples of a frame.
+# Smallest number of samples in a frame.
 FEWEST = 8
-# Points of a spectrum per point that a frame resolves, so that a parabola finds the top of a peak.
+# Number of points in the spectrum for each point that a frame resolves: enough for a parabola to find the top of a
+# peak.
 FINE = 4
-# Power over that of the strongest tone [1], from which on another may be the pitch in its place, and share of the
-# audible power that must repeat itself with its period [1].
+# A tone may be the pitch instead of the strongest one if it has at least the first share of that one's power [1]; the
+# second is the share of the audible power that must repeat itself with the period of the tone [1].
 NEARLY, REPEATS = 0.5, 0.3
-# Longest period in which repetition is measured, in frames.
+# Longest period for which repetition is measured, in frames.
 LONGEST = 0.5
-# Difference from a multiple of the frequency of cycles up to which a tone may be a partial of these [1], and largest
-# repetition with its own period, over that with the period of the cycles, if it is [1].
+# A tone may be a partial of the cycles if it is this close to a multiple of their frequency [1], and if repetition with
+# its own period is at most the second value times that with the period of the cycles [1].
 NEAR, ALONE = 0.02, 0.6
-# Difference up to which the number of the partial is certain, in points that a frame resolves.
+# The number of a partial is certain if the tone is this close to the multiple, in points that a frame resolves.
 CERTAIN = 0.1
 # Other tones are at most this far below the strongest [dB], and stand out by this much [dB].
 DEEP, PROMINENT = 20.0, 6.0
@@ -104,7 +105,7 @@ class AudibleSpectrum:
         is_measured = cycle * self.frame * LONGEST >= 1.0
         if alone >= max(REPEATS, is_near * is_measured * ALONE * together):
             return pitch
-        # The loudest part of the cycles counts for the pitch, if the number of the partial is certain.
+        # The pitch is that of the cycles, from their loudest partial if its number is certain.
         is_certain = number > 1 and abs(pitch - number * cycle) <= CERTAIN / self.frame
         return pitch / number if is_certain else cycle
 
@@ -117,7 +118,7 @@ class AudibleSpectrum:
         """Return the indices of the local maxima from the lowest tone on."""
         rises, falls = values[1:-1] > values[:-2], values[1:-1] >= values[2:]
         peaks = 1 + np.flatnonzero(rises & falls)
-        # The first point under the weighting is no peak of the power itself.
+        # The weighting can make the first point a peak that the power itself does not have.
         edge = np.searchsorted(self.frequency, self.lowest)
         return peaks[(peaks > edge) | ((peaks == edge) & (self.power[peaks] > self.power[peaks - 1]))]
 

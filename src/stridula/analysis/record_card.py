@@ -26,7 +26,7 @@ from .regimes import LIMITS, regime_of, tones_beside
 from .several_contacts import loads, mean_shares
 from .spectra import dominant_frequency
 
-# Endings that have a line.
+# Endings of runs that are shown in a line of the card.
 ENDINGS = {
     "off the track": "the tip ran off the end of its track",
     "not finite": "failed: the state is no longer finite",
@@ -37,7 +37,7 @@ ENDINGS = {
 # Regimes that are cycles of one frequency.
 SQUEAL = "squeal"
 CYCLES = (SQUEAL, "stick-slip")
-# The way to the level of the sound, whose computation takes too long for a card.
+# How to get the sound level, which takes too long to compute for a card.
 ASK_FOR_LEVEL = 'not computed: st.equivalent_level(st.radiate(run, system), "A") gives LAeq at 1 m'
 # Relative changes of a force below this are rounding errors.
 STEADY = 1e-9

@@ -8,12 +8,12 @@ from ..arrays import Array
 
 # Largest number of events in a pattern that recurs.
 LONGEST_PATTERN = 6
-# Deviation up to which times are alike [1], the largest where events are known to the nearest sample only, and the
-# share of times that must be alike.
+# Times are alike if they deviate by at most the first value [1], or the second one if events are known only to the
+# nearest sample; the third is the share of times that must be alike.
 ALIKE, COARSE, MOST = 0.1, 0.5, 0.8
-# Fewest events that can recur.
+# Smallest number of events that can recur.
 FEWEST = 3
-# Rest over the median time, above which it divides two series of events.
+# A pause longer than this multiple of the median time separates two series of events.
 GAP = 2.5
 
 

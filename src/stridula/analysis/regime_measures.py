@@ -17,14 +17,14 @@ from .status_changes import MIXED, last_rest
 from .status_cycles import StatusCycles
 
 STICKING = 1
-# Share of samples with a change of status above which the cycle is faster than the samples: a cycle sampled eight
-# times per period has a quarter.
+# If the status changes within more than this share of the samples, the cycle is faster than the samples. A cycle with
+# eight samples per period has a share of a quarter.
 UNRESOLVED = 0.5
-# Fraction of `faint` above which a growing tone counts.
+# A growing tone counts from this fraction of `faint` on.
 BUDDING = 0.02
-# Level in bursts over that of the whole record, below which bursts are not what is heard [1].
+# If the level in bursts is less than this fraction of that of the whole record, the bursts are not what is heard [1].
 FAINTER = 0.5
-# Shortest cycle of status that samples show [samples].
+# Length of the shortest cycle of the status that samples show [samples].
 SHORTEST_CYCLE = 1.5
 
 
@@ -266,7 +266,7 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     counted = heard.later_half() if settles else heard
     audibility = counted.level / mean
     recurring = 1.0 / (slipping.period * interval)
-    # Cycles that recur in bursts are faster than all changes over the time.
+    # Cycles that recur in bursts are faster than the mean rate of changes.
     change_rate = max(change_rate, recurring) if recurring > 0.0 else change_rate
     tonality, tone, cycle = counted.tonality, float("nan"), 1.0 / (slipping.rhythm * interval)
     cycle = recurring if recurring > 0.0 else cycle

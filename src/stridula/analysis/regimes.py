@@ -23,10 +23,10 @@ SLIDES, STICKS, SLIPS, SQUEALS, JUDDERS, LEFT = REGIMES
 LIMITS = Thresholds()
 # Fraction of the record ignored by default.
 TRANSIENT = 0.1
-# Growth of a tone from one half of the time to the other: below the first value it dies away, above the second it
-# grows.
+# Ratio of a tone in the second half of the time to that in the first. Below the first value it dies away; above the
+# second it grows.
 KEPT, GROWING = 0.5, 2.0
-# Periods of a tone in a slip above which the tone is sustained: a released mode is caught within one period.
+# Number of periods in one slip above which a tone counts as sustained. A released mode is caught within one period.
 SUSTAINED = 2.0
 # Endings of failed runs.
 FAILED = ("not finite", "contact unsolved", "energy created")
@@ -41,7 +41,7 @@ NEEDED = (
 )
 # Variables of each contact.
 OF_CONTACTS = ("status_share", "normal_force", "tangential_force", "landings")
-# Variables used: landings are counted from the shares if not recorded.
+# Variables that are used. If landings are not recorded, they are counted from the shares.
 TAKEN = (*NEEDED, "landings")
 MEANINGS = {
     "regime": ("1", "regime of the contact"),
@@ -259,13 +259,13 @@ def _at_rest(found: Measures, limits: Thresholds) -> tuple[str, float]:
 
 def _on_the_move(found: Measures, limits: Thresholds) -> tuple[str, float]:
     """Return the regime of a run whose status keeps changing, and its margin."""
-    # A cycle of states this fast is a limit cycle, however faint its forces are.
+    # A cycle of states this fast is a limit cycle, even if its forces are faint.
     heard = max(_above(found.audibility, limits.faint), _above(found.change_rate, limits.lowest_tone))
     sustained = math.inf if math.isnan(found.periods) else _above(found.periods, SUSTAINED)
     squeals = min(heard, _odds_above(found.tonality, limits.tonal), sustained)
     if squeals >= 0.0:
         return SQUEALS, squeals
-    # Share of the time without sticking, so that the length of stick phases does not matter.
+    # The share is relative to the time without sticking, so that the length of stick phases does not matter.
     moving = found.separated + found.sliding
     opens = _odds_above(found.separated / moving if moving else 0.0, limits.rare)
     if opens >= 0.0:

@@ -9,7 +9,8 @@ import numpy as np
 from ..arrays import Array
 from .status_changes import MIXED, changes, least_landings, whole_status
 
-# Share of the load above which contacts decide for all, above one half so that two equal contacts only do together.
+# Contacts that carry more than this share of the load decide for all of them. It is above one half, so that two equal
+# contacts decide only together.
 MAJORITY = 0.55
 
 
@@ -60,7 +61,7 @@ def together(share: Array, carried: Array) -> Array:
     if carried.size == 1:
         return share[:, 0]
     order = np.argsort(-share, axis=1, kind="stable")
-    # The last contact carries the rest, regardless of rounding of the sum.
+    # The last contact carries the rest, so that rounding of the sum has no effect.
     enough = np.cumsum(carried[order], axis=1)[:, :-1] > MAJORITY
     last = np.where(enough.any(axis=1), enough.argmax(axis=1), carried.size - 1)
     samples = np.arange(len(share))

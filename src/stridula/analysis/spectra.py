@@ -11,7 +11,7 @@ from .signals import blocks, checked_intervals, pieces, samples
 
 PERIODS = 10.0
 FINEST = 2.0
-# Sample rate above which a spectrum this fine does not fit into memory [Hz].
+# Above this sample rate a spectrum this fine does not fit into memory [Hz].
 FASTEST = 1e8
 
 

@@ -18,9 +18,9 @@ from ..lowering.model_ends import notes_of
 from ..records.variables import EQUILIBRIUM, TANGENTS, described
 from ..system import System
 
-# Time in which forces on contacts with a stiffness are expected, for notes on their frequency [s].
+# Notes on the frequency of contacts with a stiffness are for the forces expected within this time [s].
 AHEAD = 1.0
-# Share of the kinetic energy from which bodies determine a mode.
+# Bodies determine a mode if they have at least this share of its kinetic energy.
 OF_THE_BODIES = 0.5
 
 

@@ -19,7 +19,7 @@ def whole_status(share: Array) -> Array:
         Share of each status in each sample.
     """
     found = np.full(len(share), MIXED)
-    # The first of several applies.
+    # If several apply, the one with the lowest number is kept.
     for status in (2, 1, 0):
         found[share[:, status] >= 1.0 - ROUND_OFF] = status
     return found

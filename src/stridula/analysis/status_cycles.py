@@ -11,13 +11,14 @@ from .phases import ROUND_OFF, moving_mean
 from .recurrences import recurrence
 from .status_changes import prevailing, regularity, slips, vibrations
 
-# Time steps up to which a stick or a slip may be noise.
+# Sticks and slips that last at most this number of time steps may be noise.
 NOISY_STEPS = 2.0
-# Slips in a row, each soon after the last, from which on these are cycles and not the chatter of one slip.
+# From this number on, slips that soon follow each other are cycles, not the chatter of one slip.
 CYCLES = 5
-# Periods of the cycle between slips above which these belong to different bursts.
+# Slips that are more than this number of periods apart belong to different bursts.
 MISSED = 2.5
-# Periods of the lowest tone over which the share of sticking in a stop is averaged, and that the shortest burst lasts.
+# Lengths in periods of the lowest tone: of the window over which the share of sticking in a stop is averaged, and of
+# the shortest burst.
 STOP, BURST = 1.5, 1.0
 
 
@@ -37,7 +38,7 @@ class StatusCycles:
     def __init__(self, sticking: Array, step: float, lowest: float) -> None:
         self.size, self.lowest, self._sticking = sticking.size, lowest, sticking
         noise = NOISY_STEPS * step * (1.0 + ROUND_OFF)
-        # Slips with their chatter, and each slip by itself, as starts and ends.
+        # Starts and ends of the slips with their chatter, and of each slip by itself.
         self.slips = slips(sticking, noise, lowest)
         self._each = slips(sticking, noise, 0.0)
 

@@ -10,7 +10,8 @@ from typing import Any
 
 # Greatest length of an answer [bytes].
 LONGEST = 1_000_000
-# Time for which the process is kept once no page is open [s]: a page that is loaded again need not start another.
+# Time for which the process is kept after the last page has closed [s], so that a page that is loaded again does not
+# start another one.
 REST = 10.0
 
 
@@ -33,9 +34,9 @@ class Beside:
         **words
             Arguments of the function of that name in `beside_worker.ANSWERS`.
         """
-        # A cancelled question stops here, since otherwise it would start the process.
+        # A cancelled question ends here; otherwise it would start the process.
         await self._turn.acquire()
-        # Once started it is computed to its end, so that answers keep their order.
+        # Once started, it is computed to its end, so that answers keep their order.
         line = json.dumps({"what": what, "words": words})
         return await asyncio.shield(asyncio.ensure_future(self._answer(line, self._closed)))
 

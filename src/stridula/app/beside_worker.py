@@ -84,7 +84,7 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with contextlib.suppress(OSError, AttributeError):
         os.nice(NICENESS)
-    # Heavy imports come after the priority is lowered.
+    # Heavy imports come after the priority has been lowered.
     from ..studies.task import use_one_thread
 
     use_one_thread()

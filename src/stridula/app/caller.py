@@ -8,7 +8,7 @@ import logging
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-# Time without a complete request after which a caller is disconnected [s].
+# A caller is disconnected after this time without a complete request [s].
 HURRY = 10.0
 
 

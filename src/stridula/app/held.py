@@ -58,7 +58,7 @@ def held(wanted: Scene, last: Scene | None) -> Held:
     before = last.overrides if last is not None and is_of_one_case(wanted, last) else {}
     turned = [key for key, value in wanted.overrides.items() if before.get(key) != value]
     for key in turned:
-        # A single value that causes the problem.
+        # A single value may cause the problem.
         found = _tried(_put_back(wanted, before, [key]))
         if found is not None:
             return Held(*found, {key: problems}, problems)

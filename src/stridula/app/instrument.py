@@ -22,17 +22,18 @@ from .playable import Playable
 from .sources import Heard, Source, heard_from, source_of
 
 RATE = 48_000
-# Time after which a tip that sticks under a constant force, or is off the track, begins another stroke [s].
+# A tip that sticks under a constant force, or has left the track, begins another stroke after this time [s].
 PATIENCE = 0.5
-# Time since the last repeated stroke after which a failed stroke is followed by another [s].
+# A failed stroke is followed by another if at least this time has passed since the last repeated one [s].
 TRUST = 0.5
-# Time in which a jump of the sound is smoothed, so that a new stroke does not click [s].
+# A jump of the sound is smoothed over this time, so that a new stroke does not click [s].
 BLEND = 0.004
-# Seconds played per second above which it keeps up with the sound.
+# It keeps up with the sound if it plays more than this number of seconds per second.
 LIVE = 1.05
-# Number and samples of the moments that measure the speed of playing; short ones if they take longer than the last [s].
+# Number of moments that measure the speed of playing, their samples, and the samples of short ones, which are used if a
+# short one takes longer than the last value [s].
 MOMENTS, MOMENT, SHORT, LONG = 5, 480, 48, 0.01
-# Parts to whose ends it can return.
+# Number of parts to whose ends it can return.
 PARTS_KEPT = 50
 # Attributes that change while it plays.
 PLAYING = ("stroke", "ended", "played_samples", "_still", "_blend", "_last", "_since_repeat", "_must_blend")
@@ -73,13 +74,13 @@ class Instrument:
         # Longer step needed to keep up with the sound [s], None if the usual one suffices.
         self.longer: float | None = None
         self._still, self._blend, self._last = 0, 0.0, 0.0
-        # Samples since a stroke last followed another by itself.
+        # Number of samples since a stroke last followed another by itself.
         self._since_repeat = round(TRUST * RATE)
         self._must_blend = False
         self.last_seconds = LastSeconds(RATE, played)
         self.last_seconds.changed(0.0, played)
         self._moments: deque[_Moment] = deque(maxlen=PARTS_KEPT)
-        # The part before a change that was played again, up to its place.
+        # The part that is played again up to the place of a change.
         self._again: list[Part | Stop] = []
         self._forget()
 
@@ -211,7 +212,7 @@ class Instrument:
         try:
             self.change(usual.stepped(step), self.revision)
         except ValueError:
-            # Beyond the limit of the scheme.
+            # The step is beyond the limit of the scheme.
             return speed
         longer = self.speed()
         if longer < LIVE:
@@ -223,7 +224,7 @@ class Instrument:
 
     def speed(self) -> float:
         """Return the seconds played per second, measured over some moments, and restart."""
-        # The first may compile.
+        # The first call may compile.
         self._taken(SHORT)
         samples = SHORT if self._taken(SHORT) > LONG else MOMENT
         taken = [self._taken(samples) for _ in range(MOMENTS)]

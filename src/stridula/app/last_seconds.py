@@ -38,7 +38,7 @@ from .sources import Source
 KEPT = 10.0
 # Largest number of values kept for contacts: with many contacts, fewer seconds are kept.
 MOST_NUMBERS = 60_000_000
-# Energies that decide a regime: as computed, and as kept.
+# Energies that decide a regime: those that are computed, and those that are kept.
 MARCHED = ("damping_loss", "friction_loss", "convection_work", "contact_work")
 LOSSES = ("damping_loss", "friction_loss", "impact_loss")
 
@@ -54,7 +54,7 @@ class _Kept:
     contacts: dict[str, Array]
     status_shares: Array
     probes: Array
-    # Energy lost in each sample, and until the end since the march began or was changed.
+    # Energy lost in each sample, and energy lost from the start or last change of the march to the end of the part.
     losses: Array
     lost: Array
 

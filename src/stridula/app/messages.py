@@ -13,7 +13,7 @@ LONGEST = 300
 Number = Annotated[float, Field(allow_inf_nan=False, ge=-1e15, le=1e15)]
 Revision = Annotated[int, Field(ge=0, le=2**50)]
 Key = Annotated[str, Field(max_length=100)]
-# Number of samples that the page keeps: it has not played the later ones yet, and they are computed anew.
+# Number of samples that the page keeps. It has not played the later ones yet, so these are computed again.
 Kept = Annotated[int, Field(ge=0, le=2**50)] | None
 
 

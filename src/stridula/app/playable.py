@@ -22,18 +22,19 @@ from .controls import KEYS, Turned, turned_of_pair
 from .sources import Source, sources_of
 from .turned import expanded, turned_of_system
 
-# One beam on another, other systems in the plane, and systems in space.
+# Cases with one beam on another, with other systems in the plane, and with systems in space.
 PRESETS = ("squeal", "judder", "weak-pressure", "strong-pressure", "stable-sliding", "axial-sliding")
 SYSTEMS = ("violin", "squeal-on-plate", "judder-on-plate", "belt", "lugre")
 IN_SPACE = ("glass", "wheel", "pin-on-disc", "pad-on-disc", "brake")
 CASES = (*PRESETS, *SYSTEMS, *IN_SPACE)
 MOST_ELEMENTS, MOST_MODES, MOST_CONTACTS = 100, 400, 100
-# Modes of a system other than a pair of beams, which may play slower than real time.
+# Largest number of modes of a system other than a pair of beams; such systems may play slower than real time.
 MOST_OF_SYSTEMS = 1500
-# Elements of a generated mesh, and nodes of a mesh or a profile, whose modes are computed within a minute.
+# Largest numbers of elements of a generated mesh, and of nodes of a mesh or a profile, with modes that are computed
+# within a minute.
 MOST_OF_MESH, MOST_NODES = 4000, 20_000
-# Degrees of freedom of a body of revolution in all orders, and nodes of a mesh times the square of its modes, whose
-# modes are computed within a minute.
+# Largest numbers of degrees of freedom of a body of revolution in all orders, and of nodes of a mesh times the square
+# of its modes, with modes that are computed within a minute.
 MOST_UNKNOWNS, MOST_SEARCHED = 500_000, 2e9
 # Shortest step allowed in a scenario [s].
 SHORTEST_STEP = 1e-7

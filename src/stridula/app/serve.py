@@ -26,7 +26,7 @@ from .server import create_app
 GRACE = 2
 # Time after which compilation is announced [s].
 PATIENCE = 2.0
-# Hosts that mean all addresses of this machine.
+# Host names that stand for all addresses of this machine.
 EVERYWHERE = ("0.0.0.0", "::")
 # An unused address and port.
 ELSEWHERE = ("192.0.2.1", 9)

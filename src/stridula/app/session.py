@@ -35,23 +35,25 @@ from .turned import keys_of
 Result = TypeVar("Result")
 # Largest lead of a page over real time [s], and its largest speed relative to real time.
 AHEAD, FASTEST = 1.0, 1.5
-# Parts after which other pages have their turn; parts that take long are cut so that turns come this often [s], and
-# the longest time of parts played at once [s].
+# Other pages have their turn after this number of parts. Parts that take long are cut so that turns come this often
+# [s]; the last value is the longest time of parts played at once [s].
 PARTS_AT_ONCE, TURN, LONGEST = 4, 0.02, 0.25
-# Parts of each message in which sound computed anew is sent at once, so that the first comes early, and their samples.
+# Sound that is computed again is sent at once, in messages with these numbers of parts, so that the first comes early;
+# number of samples in a part.
 ANEW, PART = (1, 1, 2, 2), 480
-# Speed from which sound that is not heard yet is computed anew after a change; slower systems need it.
+# From this speed on, sound that has not been heard yet is computed again after a change; slower systems need the sound
+# that they have.
 REPLAYED = 2.0
-# Time without changes before linear theory is computed [s].
+# Linear theory is computed after this time without changes [s].
 PAUSE = 0.25
-# Interval in which the present motion is reported, and the shortest one [s].
+# Interval at which the present motion is reported, and the shortest allowed one [s].
 MOMENT, SHORTEST = 1.0, 0.2
-# Weight of earlier measurements in the speed of playing, since a machine may be busy at times; samples needed for a new
-# measurement.
+# Weight of earlier measurements in the speed of playing, as a machine may be busy at times; number of samples needed
+# for a new measurement.
 KNOWN, ENOUGH = 0.6, 48
-# Time after which a page without a first message is disconnected [s].
+# A page that has not sent a first message is disconnected after this time [s].
 HURRY = 10.0
-# Most messages that wait while one is answered.
+# Largest number of messages that wait while one is answered.
 WAITING = 16
 # Codes of a socket that closed without a code, and of one whose page sent nothing.
 GONE, SILENT = 1006, 4408
@@ -74,14 +76,14 @@ class Session:
         self.scene: Scene | None = None
         self.source, self.repeats = "pressure", True
         self._tasks: dict[str, asyncio.Task[None]] = {}
-        # Messages that wait, and whether the page has gone, after which threads end.
+        # Messages that wait, and whether the page has gone, which ends the threads.
         self._messages: asyncio.Queue[str | Exception] = asyncio.Queue(WAITING)
         self._gone = threading.Event()
-        # Samples requested since a time, and samples given.
+        # Time since which requested samples are counted, number of them, and number of samples sent.
         self._began, self._played, self._given = clock.monotonic(), 0, 0
         # Hash of the last drawing.
         self._drawn: str | None = None
-        # Seconds of a system played per second; time taken and samples played since its measurement.
+        # Seconds of the system played per second; time taken and number of samples played since that was measured.
         self.speed: float | None = None
         self._taken, self._made = 0.0, 0
         # Held while the scenario changes and while parts are played.
@@ -191,7 +193,7 @@ class Session:
                 goes_on = await self._play(played, scene.revision, other, kept)
                 is_anew = await self._anew()
                 self.scene = found.scene
-                # Before the first part of it.
+                # The page receives the scene before its first part.
                 await self._tell_scene(scene.revision, goes_on, refused)
                 await self._send_anew(is_anew)
         except MemoryError:
@@ -312,7 +314,7 @@ class Session:
         """Play the next parts; a page that requests more than real time must wait."""
         wanted = pull.parts * pull.samples
         allowed = round((clock.monotonic() - self._began) * FASTEST * RATE)
-        # Parts not requested in time are not made up for.
+        # Parts that were not requested in time are not sent later.
         self._played = max(self._played, allowed) + wanted
         early = (self._played - allowed) / RATE - AHEAD
         if early > 0.0:
@@ -324,7 +326,7 @@ class Session:
         parts: list[bytes] = []
         start = clock.monotonic()
         for number, samples in enumerate(self._cut(pull)):
-            # Computed here and not in a thread, since changing threads takes as long as a part.
+            # Computed here, not in a thread: switching threads takes as long as a part.
             began = clock.perf_counter()
             found = list(instrument.play(samples))
             self._taken += clock.perf_counter() - began

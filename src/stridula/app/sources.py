@@ -55,7 +55,7 @@ SOURCES = {
     "acceleration": Source("Track acceleration", "m/s²", 50.0, "The acceleration of the track's centre."),
     "friction": Source("Friction force", "N", 20.0, "The friction force on the track."),
 }
-# Sources for several contacts, in place of those for one.
+# Sources for several contacts, instead of those for one.
 TOGETHER = {
     "force": Source("Contact forces", "N", 20.0, "The sum of the normal forces of all contacts."),
     "friction": Source("Friction forces", "N", 20.0, "The sum of the friction forces of all contacts."),
@@ -158,7 +158,7 @@ class Pressure:
         """Return the pressure over a chunk [Pa]."""
         forces, abscissas = chunk.contacts["normal_force"], chunk.contacts["contact_position"]
         if self.rest is None:
-            # Forces in equilibrium, or of a stroke that goes on, have already bent the track.
+            # Forces in equilibrium, and those of a stroke that continues, have already bent the track.
             is_bent = self.starts_at_rest or chunk.time[0] > 1.5 * self.interval
             self.rest = forces[:, :1] if is_bent else np.zeros((len(forces), 1))
         heard = []

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array
 from ..bodies.drawn_surfaces import Drawn, DrawnRings, DrawnSurface
 
-# Largest numbers of corners drawn of a surface and of the outline of a body of revolution.
+# Largest numbers of corners that are drawn: of a surface, and of the outline of a body of revolution.
 MOST_CORNERS, MOST_OF_OUTLINE = 5000, 160
 # Largest number of values in the mode shapes of a body.
 MOST_NUMBERS = 1_000_000

@@ -15,11 +15,11 @@ from ..scenarios.outline import Path, look_up
 from ..scenarios.quantities import DEGREES, UNITS
 from .controls import CHOICES, CONTROLS, DEGREE, Choice, Control, Turned
 
-# Tables whose numbers have controls: contacts and drives before bodies.
+# Tables whose numbers have controls; contacts and drives come before bodies.
 TURNED = ("contacts", "surfaces", "drives", "connections", "bodies")
-# Positions, and numbers of little effect, have no controls.
+# Positions, and numbers with little effect, have no controls.
 NOT_TURNED = {"point", "points", "gap", "at", "inclination", "poisson", "profile", "mesh"}
-# Nor do the settings of bodies with a mesh, whose modes take minutes to compute.
+# The settings of bodies with a mesh, whose modes take minutes to compute, have none either.
 MESHES, NOT_TURNED_OF_MESHES = {"profile", "mesh"}, {"cutoff", "axis", "origin"}
 # Range of a slider, as a factor on the value in the scenario.
 REACH = 5.0
@@ -143,7 +143,7 @@ def _together(
     found: dict[str, Path] = {}
     for path, node in outline.paths(tables):
         value = look_up(tables, path)
-        # A number set to zero keeps its control, but one that is zero from the start gives no range.
+        # A number that was set to zero keeps its control; one that is zero from the start gives no range.
         is_word = isinstance(value, str) and outline.is_choice(node)
         is_there = is_word or (_is_number(value) and (value or look_up(before, path)))
         if not (is_there and is_wanted(path, node)):

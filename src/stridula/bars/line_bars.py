@@ -9,7 +9,7 @@ from types import TracebackType
 from typing import Protocol
 
 PREPARING = "preparing"
-# Cells of a bar written as text, and the least time between two updates [s].
+# Number of cells of a bar written as text, and shortest time between two updates [s].
 CELLS, SELDOM = 20, 0.1
 # Number of lines in a log for a whole computation.
 STEPS = 10

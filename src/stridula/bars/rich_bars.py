@@ -57,5 +57,5 @@ class RichBar:
 
     def show(self, done: float, total: float, words: str, before: float = 0.0) -> None:
         """Show how much is done, with a text; the time left follows from the part done since `before`."""
-        # The speed is that between updates; the first one, with what was done before, does not count.
+        # The speed is measured between updates, so that work done before the first one does not count.
         self._progress.update(self._task, completed=done, total=total, words=words)

@@ -23,7 +23,7 @@ BODY = "body"
 SIDES = ("inner", "outer", "bottom", "top")
 # Growth of the sides of cells with the distance from smaller ones, and samples of an interval to integrate it.
 GROWTH, SAMPLES = 0.5, 257
-# Sides whose pairs with all others are checked at once.
+# Number of sides that are checked against all others at once.
 SIDES_AT_ONCE = 256
 
 

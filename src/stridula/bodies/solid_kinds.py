@@ -65,7 +65,7 @@ class ElementKind:
 
     @cached_property
     def face_nodes(self) -> Array:
-        """Numbers of the nodes of each face, shape (faces, nodes): corners, middles of edges, the middle."""
+        """Node numbers of each face, shape (faces, nodes): corners, then midpoints of edges, then the centre."""
         pairs = [frozenset(edge) for edge in self.edges]
         found = []
         for number, face in enumerate(self.faces):

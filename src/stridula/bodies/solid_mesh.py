@@ -39,8 +39,8 @@ class Face:
     Attributes
     ----------
     nodes : ndarray, shape (faces, nodes of one)
-        Numbers of the nodes of each face of an element: corners counter-clockwise about the outward normal, middles of
-        edges, middle.
+        Node numbers of each face of an element: corners counter-clockwise about the outward normal, then midpoints of
+        edges, then the centre.
     area : ndarray, shape (faces,)
         Areas [m²]; for curved faces, of their projection along the normal.
     normal : ndarray, shape (faces, 3)

@@ -155,7 +155,7 @@ def reduce_sparse(problem: SparseProblem, cutoff: float | None) -> SparseReducti
     ValueError
         If no mode is left, or if a frequency is zero where no motion is rigid.
     """
-    # Threads slow down the many small blocks of the factors; and one thread gives the same bits on every machine.
+    # Threads slow down the many small blocks of the factors, and a single thread gives the same bits on every machine.
     with threadpool_limits(1):
         return _reduced(problem, cutoff)
 

@@ -14,7 +14,7 @@ from ..system import System
 def print_card(
     record: xr.Dataset, title: str, files: list[str], doubtful: list[str], system: System, level: str
 ) -> None:
-    """Print the result of a run, its level in words or how to get it, and which of its values are doubtful."""
+    """Print the result of a run, its sound level (or how to compute it), and which values are doubtful."""
     table = Table(title=escape(title), show_header=False, title_justify="left")
     for name, words in facts_of(record, system, level).items():
         table.add_row(name, escape(words))

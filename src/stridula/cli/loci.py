@@ -50,7 +50,7 @@ def _change(one: xr.Dataset, key: str, unit: str) -> str:
     if float(one["unstable"]) > float(one["stable"]):
         before = "" if beyond == "stable" else f"; {beyond} before"
         return f"unstable from {place}, at {float(one['frequency']):.5g} Hz{before}"
-    # A system that jams or is held has no frequency.
+    # A system that is jammed or held has no frequency.
     return f"{beyond} from {place}" + (f", at {float(one['frequency']):.5g} Hz" if beyond == "stable" else "")
 
 

@@ -16,7 +16,7 @@ from .rigid_track import RigidTrack
 
 # Relative tolerance at the ends of a side of a profile, or at the edges of a face.
 BEYOND = 1e-9
-# The opposite position on the body, None for a plane; the outward normal there, and its distance [m].
+# The opposite position on the body (None for a plane), the outward normal there, and the distance to it [m].
 Met = tuple[Any, Array, float]
 
 

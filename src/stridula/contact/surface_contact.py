@@ -24,14 +24,14 @@ from .point_contact import PointContact
 from .rigid_track import RigidTrack
 from .stiffness import ContactStiffness, checked_stiffness, per_area
 
-# Points of a face beyond which the time of a run is mentioned.
+# With more points than this on a face, a note mentions the time that a run takes.
 MANY = 250
-# Least cosine between opposite normals of two faces that face each other.
+# Two faces face each other if the cosine between their opposite normals is at least this.
 FACING = 0.5
-# Largest overlap of faces, relative to the size of the sliding one, that is due to rounding of coordinates.
+# Largest overlap of faces, relative to the size of the sliding face, that may be due to rounding of coordinates.
 OVERLAP = 1e-6
-# Least share of the velocity of a turning track along its facets, whose normals are not those of the round surface, and
-# distance from the axis, relative to the size of the face, that is due to rounding.
+# Smallest share of the velocity of a turning track that lies along its facets, whose normals differ from those of the
+# round surface; largest distance from the axis, relative to the size of the face, that may be due to rounding.
 ALONG, ON_THE_AXIS = 0.98, 1e-9
 
 

@@ -18,10 +18,11 @@ from .structure import SEPARATED, SLIDING, STICKING, UNMOVED, Structure
 
 # Relative size below which a force or an acceleration is round-off.
 ROUND_OFF = 1e-9
-# Most iterations of the indentation of compliant contacts, and the relative change of forces that is round-off.
+# Largest number of iterations for the indentation of compliant contacts, and relative change of forces that counts as
+# round-off.
 YIELDING, SETTLED = 60, 1e-13
-# Flexibility of rigid contacts that hold the same motion twice, relative to that of the bodies; it vanishes in the
-# iteration, and leaves the forces of which it selects the least.
+# Flexibility of rigid contacts that hold the same motion twice, relative to that of the bodies. It vanishes in the
+# iteration; of the possible forces it selects the smallest.
 SOFT = 1e-8
 # Number of equations that are kept, each with matrices of all closed contacts.
 KEPT = 8
@@ -339,7 +340,7 @@ class Equations:
         """Return whether changes of contact forces that leave held rigid motions in balance do positive work."""
         null = scipy.linalg.null_space(self._kept.T @ self._pulled) if self._kept.size else np.eye(len(self.held))
         if self._kept.size and np.abs(null.T @ self.response.moved[self.held] @ self._kept).max(initial=0.0) > 0.0:
-            # Friction also turns held rigid motions: the spaces of forces and of motions differ.
+            # Friction also turns held rigid motions, so that the spaces of forces and of motions differ.
             same = scipy.linalg.null_space((self.response.moved[self.held] @ self._kept).T)
             if null.shape != same.shape or np.linalg.norm(null - same @ (same.T @ null)) > UNMOVED:
                 return False

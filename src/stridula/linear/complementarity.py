@@ -13,11 +13,12 @@ import numpy as np
 
 from ..arrays import Array
 
-# Margins of a set: the force of each closed contact and the gap of each open one, below zero where it is violated.
+# A function that returns the margins of a set: the force of each closed contact and the gap of each open one. A
+# negative margin is a violation.
 Margins = Callable[[Array], Array]
-# Sets in succession that may all violate as much as the best one before contacts change one at a time.
+# After this number of sets without fewer violations than the best one, contacts change one at a time.
 PATIENCE = 10
-# Most sets that are tried, for each contact.
+# Largest number of sets that are tried, for each contact.
 TRIES = 30
 
 

@@ -23,7 +23,7 @@ from .balance import (
 )
 from .structure import SEPARATED, SLIDING, STICKING, UNMOVED, Structure
 
-# Rounding of gaps relative to the displacements of modes of which they are sums.
+# Rounding error of a gap, relative to the displacements of the modes that add up to it.
 ROUNDING = 1e-14
 # Largest number of contacts with which all minors are checked.
 MOST_CONTACTS = 10

@@ -30,9 +30,10 @@ from .structure import SEPARATED, SLIDING, STICKING, Structure
 
 # Largest number of contacts with which all sets of closed contacts are tried.
 MOST_CONTACTS = 8
-# Relative difference of the forces of two equilibria below which they are the same.
+# Two equilibria are the same if their forces differ by less than this, relative to their size.
 SAME = 1e-6
-# Most passes of the forces of contacts that hold the same motion twice, and their relative change that is small.
+# Largest number of iterations for the forces of contacts that hold the same motion twice, and relative change that ends
+# them.
 PASSES, SETTLED = 60, 1e-10
 HELD, LIFTED_OFF, JAMMED = "held", "lifted off", "jammed"
 ONE, SEVERAL, NONE, AT_LEAST_ONE, NONE_FOUND = "one", "several", "none", "at least one", "none found"
@@ -137,7 +138,7 @@ class _Search:
         if self.count > MOST_CONTACTS:
             return self._of_many()
         first = searched(self._margins, np.ones(self.count, dtype=bool))
-        # A set that friction cannot hold says nothing of those that slide.
+        # A set that friction cannot hold gives no information on those that slide.
         if first is not None and self._persists(first) and self._is_unique():
             return self._at(first)[0], ONE
         sets = self._distinct(list(all_sets(self._margins, self.count)))
@@ -216,7 +217,7 @@ class _Search:
         if STICKING in status or not (at.slip_velocity[at.ratio > 0.0] != 0.0).all():
             return False
         give, _ = yielding_at(self.structure, at.normal_force)
-        # Only linear stiffness has the same flexibility under all forces; others have at least none.
+        # Only a linear stiffness has the same flexibility under all forces; for others, zero is a lower bound.
         linear = [one.yields is not None and one.yields.numbers[1] == 1.0 for one in self.structure.system.contacts]
         equations = Equations(self.structure, status, at.sense * at.ratio, np.where(linear, give, 0.0))
         return equations.is_monotone()

@@ -22,13 +22,13 @@ from .vibration import Exponents, Vibration
 
 # Relative mass below which a motion counts as massless.
 MASSLESS = 1e-9
-# Damping of massless motions relative to their stiffness, at the highest frequency, that is due to rounding.
+# Damping of massless motions relative to their stiffness, at the highest frequency, that counts as round-off.
 UNDAMPED = 1e-9
-# Shift of the eigenvalue problem over the highest angular frequency.
+# Shift of the eigenvalue problem, relative to the highest angular frequency.
 BESIDE = 0.3
-# Relative inverse of infinite exponents due to rounding.
+# An exponent counts as infinite if its inverse is below this, relative to the largest.
 ENDLESS = 1e-13
-# Damping of a motion without mass, relative to the largest one and to its stiffness, that is due to rounding.
+# Damping of a motion without mass, relative to the largest one and to its stiffness, that counts as round-off.
 CREEPS = 1e-12
 
 
@@ -118,7 +118,7 @@ def _creeping(motion: Vibration, split: _Split, shapes: bool = True) -> Exponent
     The vector s has displacements along all motions with mass except free rigid ones, velocities along all, states, and
     motions without mass that are damped; the others follow: ``left s' = right s``.
     """
-    # In units of the inverse of the highest angular frequency, so that numbers are comparable.
+    # The unit of time is the inverse of the highest angular frequency, so that numbers are comparable.
     rate = float(np.sqrt(np.diag(motion.stiffness)[motion.mass > 0.0].max(initial=1.0)))
     stiffness, damping, by_state = motion.stiffness / rate**2, motion.damping / rate, motion.by_state / rate**2
     heavy, rigid, states = split.heavy, split.rigid, len(motion.state)
@@ -126,7 +126,7 @@ def _creeping(motion: Vibration, split: _Split, shapes: bool = True) -> Exponent
     bent = heavy[:, rigid:]
     sizes = np.cumsum([0, bent.shape[1], heavy.shape[1], states, damped.shape[1]])
     x, v, z, y = (slice(*pair) for pair in pairwise(sizes.tolist()))
-    # Displacements `placed s`, without free rigid motions; velocities `moving s' + speed s`.
+    # Displacements are `placed s`, without free rigid motions; velocities are `moving s' + speed s`.
     placed, moving, speed = np.zeros((3, len(heavy), sizes[-1]))
     placed[:, x], placed[:, y], speed[:, v] = bent, damped, heavy
     pulls = stiffness @ placed + damping @ speed

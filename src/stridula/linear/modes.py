@@ -10,12 +10,12 @@ from .massless import massless_exponents
 from .structure import Structure
 from .vibration import Exponents, Vibration, all_exponents, nearest_exponents
 
-# Number of modes up to which all exponents are computed; beyond it the lowest COUNT.
+# Largest number of modes for which all exponents are computed; for more modes, only the COUNT lowest.
 LARGEST_DENSE = 600
 COUNT = 100
-# Exponents computed in addition to the wanted ones.
+# Number of exponents computed in addition to the wanted ones.
 SPARE = 8
-# Growth, relative to the highest angular frequency, that is due to rounding.
+# Growth, relative to the highest angular frequency, that counts as round-off.
 ROUND_OFF = 1e-9
 
 
@@ -83,7 +83,7 @@ def _nearest(structure: Structure, motion: Vibration, wanted: int, near: float) 
     elastic = np.sqrt(_moving_stiffness(structure))
     lowest = float(elastic[elastic > 0.0].min(initial=np.inf))
     centre = 2.0 * np.pi * near
-    # Both of each pair may be found, and in another order than by distance from the frequency itself.
+    # Both exponents of a pair may be found, in an order other than that of the distance from the frequency.
     sought = min(2 * wanted + SPARE, 2 * _moving(structure) - 2)
     found = nearest_exponents(motion, sought, complex(0.1 * lowest, centre))
     order = np.argsort(np.abs(found.values - 1.0j * centre), kind="stable")[:wanted]

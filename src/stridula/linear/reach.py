@@ -19,7 +19,7 @@ from .starts import at_rest, largest_displacement
 from .structure import SEPARATED, SLIDING, STICKING, Structure
 from .vibration import Exponents, Vibration, vibration
 
-# Change of a force or a velocity, relative to the largest of the mode, that is round-off.
+# Change of a force or a velocity, relative to the largest one of the mode, that counts as round-off.
 ROUND_OFF = 1e-9
 
 

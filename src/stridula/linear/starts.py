@@ -18,11 +18,11 @@ from .modes import modes_of, round_off
 from .structure import SEPARATED, STICKING, UNMOVED, Structure
 from .vibration import vibration
 
-# Most iterations of the places of contact points in the deflected system.
+# Largest number of iterations for the places of contact points in the deflected system.
 PASSES = 30
-# Change of the shift of a contact point, relative to its abscissa and its shift, that is round-off.
+# Relative change of a contact point's shift that counts as round-off.
 SETTLED = 1e-13
-# Relative force below zero, or beyond friction, that is round-off.
+# Relative force below zero, or beyond friction, that counts as round-off.
 ROUND_OFF = 1e-9
 WAYS_OUT = {
     HELD: "is held by friction: status='sticking' starts it so, another velocity or a larger push lets it slide",

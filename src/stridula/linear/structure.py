@@ -23,7 +23,7 @@ SEPARATED, STICKING, SLIDING = STATUS_WORDS
 CLOSED = (STICKING, SLIDING)
 # Relative size below which a motion does not move a row.
 UNMOVED = 1e-9
-# Short time in which residual shapes respond and modes hardly do, times the highest angular frequency.
+# Time so short that residual shapes respond and modes hardly do, times the highest angular frequency.
 SHORT = 1e-3
 # Relative squared angular frequency below which rigid motions of the bodies do not strain connections.
 UNSTRAINED = 1e-13
@@ -399,7 +399,7 @@ def _rigid_motions(structure: Structure) -> Array:
     motions = np.eye(structure.mode_count)[:, rigid]
     if not rigid.any():
         return motions
-    # Restricted to rigid motions of the bodies, a soft connection is distinguished from none for any fastest mode.
+    # Only rigid motions of the bodies are considered, so that a fast mode cannot hide a soft connection.
     squared, shapes = np.linalg.eigh(structure.stiffness[np.ix_(rigid, rigid)])
     return np.asarray(motions @ shapes[:, squared <= UNSTRAINED * squared[-1]])
 

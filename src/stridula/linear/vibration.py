@@ -20,9 +20,9 @@ from .balance import held_rows, rank, rigid_rows
 from .equilibrium import Equilibrium
 from .structure import SLIDING, STICKING, Structure
 
-# Relative imaginary part of a real exponent due to rounding.
+# Relative imaginary part of an exponent that counts as round-off of a real one.
 ROUND_OFF = 1e-9
-# Share of nonzero entries of stiffness and damping above which dense matrices are used.
+# Dense matrices are used if more than this share of the entries of stiffness and damping is not zero.
 DENSE = 0.1
 
 
@@ -218,7 +218,7 @@ def _first_order(motion: Vibration) -> tuple[Array, Array]:
     basis = np.hstack([free, basis[:, len(fixed) :]])
     motions = basis.shape[1]
     elastic = motions - rigid
-    # Forces without the part balanced by the constraints: projected along the pushes onto allowed motions.
+    # Forces without the part that the constraints balance: projected along the pushes onto allowed motions.
     answer = basis.T - (basis.T @ motion.pushes.T) @ np.linalg.solve(motion.held @ motion.pushes.T, motion.held)
     first = np.zeros((elastic + motions + states,) * 2)
     velocities, own = slice(elastic, elastic + motions), slice(elastic + motions, None)

@@ -33,7 +33,7 @@ class Coordinates:
     """
 
     system: System
-    # By identity, as comparing bodies would take longer than all other work here.
+    # The key is the identity: comparing bodies would take longer than all other work here.
     known: dict[int, Modes] = field(default_factory=dict)
 
     @cached_property

@@ -70,7 +70,7 @@ def loads_of(system: System, coordinates: Coordinates) -> tuple[list[Load], list
         return velocity * history.factor(time)
 
     def acceleration(time: Array, step: float) -> Array:
-        # A difference, not the derivative: its impulses add up to the change of velocity even at kinks.
+        # A difference, not the derivative: its impulses add up to the change of velocity, even at kinks.
         return velocity * (history.factor(time + step / 2.0) - history.factor(time - step / 2.0)) / step
 
     if imposed and history.settled != 0.0:

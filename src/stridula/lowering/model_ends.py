@@ -14,14 +14,15 @@ from ..system import System
 from .assembly import Assembly
 from .time_scales import expected_stiffness
 
-# Share of a critical speed from which effects of second order matter: centrifugal stiffening then raises frequencies of
-# discs by some percent.
+# Effects of second order matter from this share of a critical speed: centrifugal stiffening then raises the frequencies
+# of discs by some percent.
 NEAR_CRITICAL = 0.3
-# Frequencies of contacts over the cutoff that are near it; above these a contact is as good as rigid.
+# Range of frequencies of contacts, relative to the cutoff, that are near it; above this range a contact is as good as
+# rigid.
 NEAR_CUTOFF = (0.5, 2.0)
-# Share of its stiffness in the energy of a mode from which a contact determines the frequency.
+# A contact determines the frequency of a mode if its stiffness has at least this share of the energy.
 OF_THE_CONTACT = 0.5
-# Most modes with which frequencies of contacts are computed, in a small part of a second.
+# Largest number of modes for which frequencies of contacts are computed, which takes a fraction of a second.
 MOST_MODES = 300
 
 

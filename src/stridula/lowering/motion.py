@@ -83,7 +83,7 @@ def motion_of(system: System, imposed: Signal) -> Signal:
     alongs = [contact.frame[:, 0].tolist() for contact in system.contacts]
     pairs = [pairs_of(contact) for contact in system.contacts]
     firsts = (np.cumsum(pairs) - pairs).tolist()
-    # Computed once: to locate a point on a body takes long.
+    # Computed once, since locating a point on a body takes long.
     turnings = [contact.turning_velocities for contact in system.contacts]
 
     def motion(time: Array, step: float) -> Array:

@@ -15,11 +15,13 @@ from ..checks import ArgumentError
 from ..contact import LAWS, FrictionLaw
 from ..contact.linearised import Linearised
 
-# Slip speeds at which formulas are compared, over those up to which a curve is characteristic.
+# Range of slip speeds at which formulas are compared, in decades below and above the speed up to which a curve is
+# characteristic, and their number.
 DECADES_BELOW, DECADES_ABOVE, SPEEDS = 8, 3, 441
 # Slip [m] after which a contact has forgotten its first state.
 FAR = 1e9
-# Relative differences that are due to rounding; relative step of a derivative, and its error over ratio and speed.
+# Relative difference that may be due to rounding; relative step of a derivative, and its error relative to ratio and
+# speed.
 EQUAL, STEP, SLOPE_ERROR = 1e-9, 1e-5, 1e-6
 
 

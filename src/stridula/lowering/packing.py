@@ -296,7 +296,7 @@ def rows_of(blocks: Blocks, scale: Array) -> Array:
     contacts, modes = blocks.contacts, blocks.modes
     count, size = len(contacts.paths), scale.size
     used = CONTACTS + 2 * count + 2 * len(modes.loads) + len(blocks.probes.rows)
-    # An odd number of vectors, so that the same row of all blocks does not compete for a part of the cache.
+    # The number of vectors is odd, so that the same rows of all blocks do not share a part of the cache.
     rows = np.zeros((used + 1 - used % 2, size))
     rows[2:4] = modes.block[[at.B, at.R]]
     for along in contacts.paths:

@@ -7,9 +7,9 @@ import numpy as np
 from ..arrays import Array
 from .assembly import Assembly
 
-# Times at which loads are evaluated.
+# Number of times at which loads are evaluated.
 TIMES = 256
-# Contact force expected under a load that begins at once, over the load.
+# Contact force expected under a load that begins at once, relative to the load.
 OVERSHOOT = 2.0
 
 

@@ -61,7 +61,7 @@ def third_octaves(pressure: xr.DataArray, *, dynamic_range: float = RANGE, title
     axes.set_xscale("log")
     axes.set_xlim(edges[0], edges[-1])
     axes.set_ylim(bottom, top)
-    # Octaves.
+    # Bands of an octave.
     shown = np.flatnonzero(np.rint(10.0 * np.log10(levels.centre.values)) % 3 == 0)
     axes.set_xticks(levels.centre.values[shown], [_short(band) for band in levels.band.values[shown]])
     axes.minorticks_off()

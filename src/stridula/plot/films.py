@@ -156,12 +156,12 @@ class Picture:
         self.frames = self.scene.frames
         if motion.largest > 0.0:
             self.scene.draw_scale(bodies, rounded(motion.largest))
-        # On two lines from one edge: side by side they would overlap above a tall picture.
+        # The words have two lines, starting at the same edge: side by side they would overlap above a tall picture.
         self.words = bodies.set_title("", fontsize=9, loc="left")
         self.cursors = draw_contact(force, status, self.run)
         self.figure.suptitle(title, fontsize=11)
         self.show(0)
-        # Laid out once: the axes must not move from frame to frame.
+        # The layout is computed once, as the axes must not move from frame to frame.
         self.figure.draw_without_rendering()
         self.figure.set_layout_engine("none")
 

@@ -74,7 +74,7 @@ def _shown_range(law: FrictionLaw) -> Array:
     """Return velocities that cover the whole characteristic of a law."""
     if law.over_decades:
         return law.reach * np.geomspace(1e-8, 1.0, 401)
-    # Dense about rest, where most laws fall.
+    # Points are dense near rest, where most laws fall.
     forward = law.reach * np.linspace(0.0, 1.0, 401)[1:] ** 2
     return np.concatenate([-forward, forward])
 

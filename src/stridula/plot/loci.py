@@ -14,7 +14,7 @@ from ..checks import ArgumentError, instance, listed
 from .colours import LINE, LINES
 
 UNSTABLE = LINES[1]
-# Share of the axis that a label takes.
+# Share of the axis that a label occupies.
 LABEL_WIDTH = 0.09
 # States without steady sliding, drawn as bands.
 BANDS = {"held": "#cccccc", "lifted off": "#56b4e9", "jammed": "#cc79a7"}
@@ -77,7 +77,7 @@ def _draw_modes(axes: Axes, loci: xr.Dataset, key: str, name: str) -> None:
     values, grid = loci[name].values, loci[key].values
     grows = loci["unstable"].values
     axes.plot(grid, values, color=LINE, linewidth=0.8)
-    # A mode that grows at one value only still has a mark.
+    # With a marker, a mode that grows at a single value is visible, too.
     drawn = np.where(grows, values, np.nan)
     axes.plot(grid, drawn, color=UNSTABLE, linewidth=2.2, marker="o", markersize=2.2, markeredgewidth=0.0)
 

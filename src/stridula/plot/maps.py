@@ -123,7 +123,7 @@ def draw_bound(axes: Axes, inside: Array, x: Array, y: Array, style: str, words:
     """Draw the cell sides between cells inside, 1, and outside, 0, and return the handle of the legend."""
     look: dict[str, Any] = {"linewidth": 2.2 if style == "-" else 1.4, "linestyle": style}
     if np.nanmin(inside) < np.nanmax(inside):
-        # Each cell with its own corners: the level between two of them lies on the side that they share.
+        # Each cell has its own corners, so that the level between two cells lies on the side that they share.
         across, along = (np.repeat(edges(places), 2)[1:-1] for places in (x, y))
         cells = np.repeat(np.repeat(inside, 2, axis=0), 2, axis=1)
         widths, styles = look.values()

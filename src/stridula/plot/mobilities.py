@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ..checks import ArgumentError, instance
 from .colours import LINES
 
-# Quarter turns: of a spring, of a resonance, of a mass.
+# Phases that are multiples of a quarter turn: of a spring, of a resonance, of a mass.
 QUARTERS = (-180, -90, 0, 90, 180)
 
 

@@ -24,7 +24,7 @@ from .plane_scenes import PlaneScene
 from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Drawn, Film, still, write_film, writer_for
 from .scenes import Scene, checked_view
 
-# Frames of a period.
+# Number of frames in a period.
 FRAMES = 32
 # Largest displacement, as a share of the bodies' extent.
 SHARE = 0.05

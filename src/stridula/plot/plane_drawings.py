@@ -23,15 +23,16 @@ from .symbols import CONNECTIONS, SUPPORTS, across, ground
 
 FORCE, VELOCITY, SLIDING, CONTACT, JOINT = LINES[1], LINES[2], LINES[3], LINES[4], "0.25"
 TRACK = "0.45"
-# Sizes as shares of the extent of the bodies: arrows, symbols of supports, springs and how wide these are.
+# Lengths relative to the extent of the bodies: of arrows, of symbols of supports, and of springs, and the width of
+# springs.
 ARROW, SYMBOL, LENGTH, WIDTH = 0.16, 0.03, 0.13, 0.03
-# Distance below which things with the same label are drawn once.
+# Things with the same label that are closer than this are drawn once.
 NEAR = 0.06
-# Extent assumed for a point [m], reach of a rigid track to both sides, and smallest ratio of height to width.
+# Assumed extent of a point [m], length of a rigid track to both sides, and smallest ratio of height to width.
 ALONE, REACH, LOWEST = 0.1, 0.45, 0.35
-# Gaps that count as rounding [m].
+# Gaps that may be due to rounding [m].
 CLOSED = 1e-12
-# Cosine to the horizontal from which labels stand above an arrow.
+# Labels stand above an arrow if the cosine of its angle to the horizontal is above this.
 FLAT = 0.9
 # Marks of supports in the legend.
 MARKS = {"pinned": "^", "clamped": "|", "guided": "o"}
@@ -62,7 +63,7 @@ class Cluster:
         return self.words if count == 1 else f"{self.words}, each of {count}"
 
 
-# A thing, its key, shared by things that may be drawn as one, its label and its place [m].
+# A thing, its key (shared by things that may be drawn as one), its label and its place [m].
 Placed = tuple[Any, Hashable, str, Array]
 
 
@@ -279,7 +280,7 @@ class PlaneDrawing:
         size, width = LENGTH * self.extent, WIDTH * self.extent
         is_joint = not is_grounded and float(np.linalg.norm(between)) > 0.3 * size
         if is_grounded:
-            # Away from the other bodies.
+            # It points away from the other bodies.
             away = float(way @ (one.place - self.middle))
             way = way if away > 1e-9 * self.extent else -way
         along = between if is_joint else size * way

@@ -141,7 +141,7 @@ class _References:
                 for k, found in ours.items()
                 if all(one.touched is None or one.touched[0] in self.found for one in found)
             )
-            # Of two lines that touch each other only one can come first.
+            # If two lines touch each other, only one of them can come first.
             number = next(ready, left[0])
             left.remove(number)
             known = [one for one in ours[number] if one.touched is None or one.touched[0] in self.found]

@@ -16,10 +16,11 @@ from ..lines import Line, Touch
 from .colours import LINE, STATUS_COLOURS
 from .plane_motion import Surface, extent_of
 
-# Thickness of the bodies' lines [points], and diameters of marks of one contact and of several.
+# Thickness of the lines of bodies [points], and diameters of the marks of a single contact and of several contacts.
 THICK, MARKER, SMALL_MARKER = 2.5, 8.0, 5.5
 TRACK = "0.45"
-# Strokes of a surface: their distance and their length along it and across it, shares of the picture's extent.
+# Strokes of a surface: distance between them and length along and across the surface, as shares of the picture's
+# extent.
 STROKES, STROKE = 0.03, 0.012
 # Smallest height of a picture, as a share of its width.
 LOWEST = 0.3
@@ -70,7 +71,7 @@ class PlaneScene:
             axes.add_collection(LineCollection([], colors="0.55", linewidths=0.8)) for _ in self.surfaces
         ]
         tips = {one.tip[0] for one in touches}
-        # The surface that slides past is drawn in their place.
+        # The surface that slides past is drawn instead of these bodies.
         hidden = {one.tip[0] for one in touches if one.touched is not None and one.contact.surface_velocities[0]}
         self.bodies = [
             axes.plot(
@@ -120,7 +121,7 @@ class PlaneScene:
             self.markers[word].set_data(*marks[status == number].T)
 
     def _mark(self, touch: Touch, frame: int) -> Array:
-        """Return the place of the mark of a contact: the touched point, else the sliding tip."""
+        """Return where a contact is marked: at the touched point, or else at the sliding tip."""
         line, row = touch.fixed or touch.tip
         found: Array = self.places[line][frame, row]
         return found

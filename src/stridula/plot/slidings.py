@@ -12,7 +12,7 @@ from ..cards import spoken
 from ..contact import PointContact
 from ..system import System
 
-# Velocities that count as rounding, relative to the largest.
+# Velocities that may be due to rounding, relative to the largest.
 ROUND_OFF = 1e-9
 
 

@@ -17,7 +17,7 @@ from .timelines import draw_contact
 
 # By default, the largest vibration is drawn as this share of the bodies' extent.
 SHARE = 0.04
-# Time before a picture over which the mean is taken, and between its samples [s].
+# Length of time before a picture over which the mean is taken, and interval of its samples [s].
 BEFORE, FRAME = 2e-3, 4e-5
 # Areas in the figure: left and lower edge, width, height. The layouts of matplotlib reserve space for axes in space
 # even if they are hidden.

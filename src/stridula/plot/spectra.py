@@ -98,7 +98,7 @@ def _density(signal: xr.DataArray, resolution: float) -> tuple[Array, Array]:
     values, interval = one_signal(signal)
     size = min(values.size, round(1.0 / (resolution * interval)))
     frequency, density = welch(values, 1.0 / interval, nperseg=max(size, 2), detrend="constant")
-    # Only the residue of the mean is left at frequency 0.
+    # At frequency 0 only a residue of the mean is left.
     return frequency[1:], density[1:]
 
 

@@ -98,9 +98,9 @@ def _levels(values: Array, interval: float, size: int, level: Reference) -> tupl
     hop = max(size // 8, values.size // COLUMNS, 1)
     transform = ShortTimeFFT(hann(size, sym=False), hop, 1.0 / interval, scale_to="magnitude")
     first, last = transform.lower_border_end[1], transform.upper_border_begin(values.size)[1]
-    # Only windows that lie inside; for a signal as short as one window, the window about its middle.
+    # Only windows inside the signal are used; for a signal as short as one window, the window about its middle.
     first, last = (first, last) if last > first else ((values.size // 2) // hop, (values.size // 2) // hop + 1)
-    # A tone shares its amplitude with its negative frequency: its mean square is twice the square of either.
+    # A tone shares its amplitude with its negative frequency, so that its mean square is twice the square of either.
     squares = 2.0 * np.abs(transform.stft(values, p0=first, p1=last)) ** 2
     return transform.t(values.size, p0=first, p1=last), transform.f, level.decibels(squares)
 

@@ -37,9 +37,9 @@ COLOURS = "viridis"
 SLOWDOWN = 1000.0
 # Triangles with a side longer than this multiple of the median bridge gaps in the face.
 BRIDGE = 3.0
-# Cosine of the angle opposite to a side at the edge, below which a triangle is flat.
+# A triangle at the edge is flat if the cosine of the angle opposite to its outer side is below this.
 FLAT = -0.85
-# Difference of two moments of area, as a share of the largest, below which their axes are arbitrary.
+# If two moments of area differ by less than this share of the largest, their axes are arbitrary.
 ALIKE = 1e-6
 # Cosine above which an axis of the face counts as an axis of the world.
 ALONG = 1.0 - 1e-9
@@ -214,7 +214,7 @@ class _FilmOfMaps:
         self.figure, self.frames = maps.figure, len(values[0])
         self._maps, self._values, self._start, self._frame, self._words = maps, values, start, frame, words
         self.show(0)
-        # Laid out once: the axes must not move from frame to frame.
+        # The layout is computed once, as the axes must not move from frame to frame.
         self.figure.draw_without_rendering()
         self.figure.set_layout_engine("none")
 
@@ -259,7 +259,7 @@ def _axes(places: Array, areas: Array) -> Array:
     moments, ways = np.linalg.eigh((apart * areas[:, None]).T @ apart)
     first, second, normal = ways[:, 2], ways[:, 1], ways[:, 0]
     if moments[2] - moments[1] < ALIKE * moments[2]:
-        # Principal axes are arbitrary: take those nearest to the world's.
+        # If principal axes are arbitrary, those nearest to the axes of the world are used.
         world = np.eye(3)[int(np.abs(normal).argmin())]
         first = world - (world @ normal) * normal
         first /= np.linalg.norm(first)
@@ -273,7 +273,7 @@ def _mask_bridges(triangles: Triangulation) -> None:
     following = np.roll(corners, -1, axis=1) - corners
     sides = np.linalg.norm(following, axis=2)
     mask = sides.max(axis=1) > BRIDGE * np.median(sides)
-    # Cosine of the angle opposite to the side from each corner to the next.
+    # Cosine of the angle opposite to the side between each corner and the next one.
     first, second = np.roll(following, -1, axis=1), np.roll(following, -2, axis=1)
     size = np.linalg.norm(first, axis=2) * np.linalg.norm(second, axis=2)
     is_flat = -np.einsum("tsi,tsi->ts", first, second) < FLAT * size
@@ -281,7 +281,7 @@ def _mask_bridges(triangles: Triangulation) -> None:
     while before is None or (mask != before).any():
         before = mask
         triangles.set_mask(mask)
-        # Each removal exposes others at the edge.
+        # Removing a triangle exposes others at the edge.
         mask = mask | (is_flat & (triangles.neighbors < 0)).any(axis=1)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import Array
 
-# Turns of a spring, share of its length that is straight at either end, and strokes of the ground.
+# Number of turns of a spring, share of its length that is straight at either end, and number of strokes of the ground.
 TURNS, STRAIGHT, STROKES = 5, 0.2, 5
 # Angles of a circle.
 ROUND = np.linspace(0.0, 2.0 * np.pi, 25)

@@ -14,9 +14,9 @@ from .plane_drawings import PlaneDrawing
 from .scenes import checked_view
 from .space_drawings import SpaceDrawing
 
-# Width of the figure, what stands above and below the drawing, and least and largest height [inches].
+# Width of the figure, height of the texts above and below the drawing, and smallest and largest height [inches].
 WIDTH, AROUND, HEIGHTS = 9.0, 1.5, (3.6, 9.0)
-# Lines of the caption.
+# Largest number of lines in the caption.
 MOST_LINES = 7
 
 

@@ -141,7 +141,7 @@ def draw_status(axes: Axes, run: xr.Dataset, name: str) -> None:
     ribbons = share.reshape(share.shape[0], -1, share.shape[-1])
     count = ribbons.shape[1]
     for row in range(count):
-        # The first contact on top.
+        # The first contact is on top.
         _draw_ribbon(axes, run["time"].values, ribbons[:, row], float(count - 1 - row), labelled=row == 0)
     axes.set_ylim(0.0, float(count))
     axes.set_yticks([])

@@ -22,9 +22,9 @@ from .reels import FRAMES_PER_SECOND
 from .scenes import VELOCITIES, checked_view
 from .space_films import exaggeration_of
 
-# Colour of bodies at rest, and sizes of a contact point and of words, in pixels.
+# Colour of bodies at rest, and sizes of a contact point and of text [pixels].
 PALE, POINT, WORDS = "#b9c4cc", 14, 10
-# Shares of ambient light and of light from the eye, with a sum below white.
+# Shares of ambient light and of light from the eye; their sum is below white.
 AMBIENT, DIFFUSE = 0.3, 0.65
 # Place of the colour bar, in shares of the window; nearer to the edge, its title is cut off.
 BAR = {"vertical": True, "position_x": 0.86, "position_y": 0.25, "width": 0.06, "height": 0.5, "title_font_size": 16}

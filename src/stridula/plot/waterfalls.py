@@ -22,9 +22,9 @@ HIGHEST, RESOLUTION, RANGE = 16e3, 10.0, 60.0
 MOST_WORDS = 30
 # Default number of pieces of one signal, and largest number of spectra in a figure.
 PIECES, MOST = 24, 100
-# Height of the range of levels, in distances of the spectra.
+# Height of the range of levels, relative to the distance between spectra.
 OVERLAP = 2.0
-# Share of that distance within which values are the same.
+# Values that differ by less than this share of the distance count as the same.
 SAME = 1e-6
 GROWS = LINES[1]
 # Smallest number of samples for a spectrum.
@@ -195,7 +195,7 @@ def _spectra(signals: Mapping[float, xr.DataArray], highest: float, resolution: 
     for values, _ in sampled.values():
         frequency, power = welch(values, 1.0 / interval, nperseg=size, detrend="constant", scaling="spectrum")
         rows.append(level.decibels(power))
-    # Only the residue of the mean is left at frequency 0.
+    # At frequency 0 only a residue of the mean is left.
     kept = (frequency > 0.0) & (frequency <= highest)
     if np.count_nonzero(kept) < 2:
         raise ArgumentError("highest", f"be at least {2.0 * float(frequency[1]):.4g} Hz at this resolution", highest)
@@ -209,7 +209,7 @@ def _draw(axes: Axes, spectra: _Spectra, dynamic_range: float) -> None:
     kilohertz = spectra.frequency / 1e3
     every = -(-spectra.values.size // MOST_WORDS)
     for number, (value, height) in enumerate(zip(spectra.values, heights, strict=True)):
-        # Low values are in front.
+        # Spectra with low values are in front.
         order = 2.0 + spectra.values.size - number
         axes.fill_between(kilohertz, value, value + height, facecolor="white", linewidth=0.0, zorder=order)
         axes.axhline(value, color="0.85", linewidth=0.6, zorder=order)

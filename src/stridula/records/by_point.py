@@ -13,7 +13,7 @@ from .variables import CONTACT, FRICTION_STATE, STATUS, STATUS_SHARE
 # Variables of the points of surfaces recorded at every sample, besides those of the surfaces themselves.
 OF_POINTS = ("normal_force", "tangential_force", STATUS_SHARE.name, "landings")
 POINT = "point_"
-# Integer that represents a share of 1 in the records of points.
+# Integer that stands for a share of 1 in records of points.
 WHOLE = 255
 # Shares that differ from 0 or 1 by less are due to rounding.
 ROUND_OFF = 1e-9

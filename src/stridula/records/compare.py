@@ -17,8 +17,8 @@ from .variables import ENERGY, SOLVE, STATUS, described
 
 # The dominant status, which follows from the shares, and the effort of the solver are not compared.
 LEFT_OUT = (STATUS.name, *(variable.name for variable in SOLVE))
-# Variables that are normally round-off are related to others of their kind: the ledger's residual to the largest
-# energy; gap and height, round-off on a rigid floor, to the largest length in the record.
+# Variables that are normally round-off are compared relative to others of their kind: the ledger's residual to the
+# largest energy; gap and height, which are round-off on a rigid floor, to the largest length in the record.
 ENERGIES = tuple(variable.name for variable in ENERGY)
 DISTANCES = ("gap", "contact_height")
 LENGTHS = (*DISTANCES, "displacement")

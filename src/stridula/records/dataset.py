@@ -33,7 +33,7 @@ OVER_TIME = {variable.name: variable for variable in (*CONTACT, *ENERGY, STATUS_
 # All variables over time except the probes.
 RECORDED = (*OVER_TIME, STATUS.name, FRICTION_STATE.name)
 
-# Dimension of the motion of bodies where it has times of its own.
+# Dimension of the motion of bodies if it is recorded at other times than the rest.
 MOTION_TIME = "motion_time"
 
 

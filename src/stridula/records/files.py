@@ -16,7 +16,7 @@ from ..disk import RECORDS, check_ending, check_writable, named, read, write
 from ..extras import named_extras, require
 
 MAGIC = b"\x89HDF\r\n\x1a\n"
-# Most bytes of all variables of a record together, unpacked.
+# Largest size of all variables of a record together, unpacked [bytes].
 LARGEST = 16 * 1024**3
 
 
@@ -61,7 +61,7 @@ def save(run: xr.Dataset, path: str | Path) -> None:
             raise ArgumentError(
                 "run", "hold only values that NetCDF can store", run, got=f"others: {in_one_line(error)}"
             ) from error
-    # Released here: Python 3.13 and later complain about a file in memory that is collected before its content.
+    # Released here because Python 3.13 and later complain if a file in memory is collected before its content.
     with content:
         write(path, content)
 

@@ -68,7 +68,7 @@ def on_track(run: xr.Dataset, name: str) -> OnTrack | None:
 def _on_track(tables: dict[str, Any], name: str, run: xr.Dataset) -> OnTrack:
     contacts = _contacts(tables, run)
     paths = {under["body"] for under in contacts.values() if _is_along(under) and "body" in under}
-    # A beam on a beam has tables of its own.
+    # A beam on a beam is described by tables of its own.
     bodies = {name} if name in tables.get("bodies", {}) else paths or {"track"}
     touching = [word for word, under in contacts.items() if not _is_along(under) and under.get("body") in bodies]
     elsewhere = [word for word, under in contacts.items() if "body" in under and under["body"] not in bodies]

@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..checks import brief, counted, listed, suggestion
 from .variables import ALONG_TANGENTS
 
-# Names of the dimensions of variables over time, by their number besides the contact.
+# Dimensions of variables over time besides time and contact, by their number.
 AFTER_TIME = ((), ("contact_status",))
 
 

@@ -71,7 +71,7 @@ class _Motion(_Probe):
         """Keys of its table in a scenario, besides quantity and body."""
         place = self.point.position if self.point.point_name is None else self.point.point_name
         if hasattr(self.point.body, "mesh") or getattr(self.point.body, "faces", {}):
-            # Such bodies are kept as modes.
+            # Records keep the modes of such bodies and the labels of their points.
             place = self.point.label
         return {"point": place, "direction": self.direction}
 

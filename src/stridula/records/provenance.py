@@ -24,11 +24,11 @@ from ..system import System
 from .packed import LONGEST_LIST, PACKED, packed
 from .probes import Probe
 
-# Most bytes of the surface of a body that a record keeps for films.
+# Largest size of the surface of a body that a record keeps for films [bytes].
 LARGEST_DRAWN = 20_000_000
-# Fields of bodies that tables do not take as they are.
+# Fields of bodies that are converted before they are written to tables.
 WRITTEN_APART = ("material", "section", "points", "faces", "turning", "velocities", "circles", "drawn", "places")
-# Placeholder of a packed array while the rest is written; it has a character that no text of a scenario has.
+# Placeholder of a packed array while the rest is written. It has a character that no text of a scenario has.
 _ASIDE = "\ue000packed array "
 _PUT_ASIDE = re.compile(f'"{_ASIDE}(\\d+)"')
 # A list written by tomli_w, one number on a line; texts are on one line each and never match.
@@ -55,7 +55,7 @@ def scenario_tables(system: System, probes: Sequence[Probe], simulation: dict[st
 
 def toml(tables: Mapping[str, Any]) -> str:
     """Return tables as TOML, lists of numbers on one line."""
-    # Packed arrays need no escaping, which tomli_w would check character by character.
+    # Packed arrays need no escaping, for which tomli_w would check every character.
     arrays: list[str] = []
     text = _LIST_OF_NUMBERS.sub(_on_one_line, tomli_w.dumps(_without_arrays(tables, arrays)))
     return _PUT_ASIDE.sub(lambda found: f'"{arrays[int(found[1])]}"', text)

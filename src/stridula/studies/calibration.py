@@ -45,7 +45,7 @@ from .sweeps import sweep
 
 Point = dict[str, Any]
 Evaluate = Callable[[Sequence[Point]], Sequence[Mapping[str, Value]]]
-# Miss of a failed run, or of a measure that is not a number; other misses stay below it.
+# Miss that is assigned to a failed run, or to a measure that is not a number. Other misses are smaller.
 WORST = 10.0
 MOST_GENERATIONS = 100_000
 LARGEST_POPULATION = 10_000
@@ -114,7 +114,7 @@ class Target:
         if isinstance(value, str) or not math.isfinite(value):
             return WORST
         miss = max(0.0, self.low - value, value - self.high) / self._scale
-        # Smooth and always rising, so that a search can compare misses however narrow the bounds are.
+        # The function is smooth and always rises, so that a search can compare misses even if the bounds are narrow.
         return miss if miss <= WORST / 2.0 else WORST - (WORST / 2.0) ** 2 / miss
 
 
@@ -266,7 +266,7 @@ def _identity(source: Any, asked: Mapping[str, Any]) -> dict[str, str]:
     of = {"function": words(source)}
     if not callable(source):
         tables = read_tables(source)
-        # With the content of the files that it names.
+        # The scenario is stored with the content of the files that it names.
         of = {"scenario": toml(with_matrices(tables, tables))}
     machines = ("workers", "client")
     options = {name: value for name, value in asked["options"].items() if name not in machines}

@@ -237,7 +237,7 @@ def _push(system: System, velocity: float) -> Drive:
         return State(slider, velocity=(velocity,) * slider.mass.shape[0])
     held, translation = system.is_held(slider), slider.modes().translation
     normal, tangent, *_ = (axis[: len(translation)] for axis in system.contacts[0].frame)
-    # Under an imposed velocity x of its root is prescribed, so that only y is free.
+    # Under an imposed velocity, the x of its root is prescribed and only y is free.
     direction = np.array([0.0, 1.0]) if held else tangent
     if not held and not np.any(direction @ translation):
         direction = normal

@@ -27,17 +27,19 @@ NOT_REACHED, LEFT, FAILED = "not reached", "off the track", "failed"
 FATES = (LIVES, JOINS, CHANGES, DIES, NOT_REACHED, LEFT, FAILED)
 # Fates that end in a vibration.
 VIBRATES = (LIVES, JOINS, CHANGES)
-# Periods of the mode in the window over which a limit cycle is measured, and its shortest length [s].
+# Number of periods of the mode in the window over which a limit cycle is measured, and shortest length of the window
+# [s].
 PERIODS, SHORTEST_WINDOW = 100.0, 0.1
-# Times 1 / growth in which a limit cycle settles once contacts open, stick or slip.
+# Time in which a limit cycle settles once contacts open, stick or slip, in units of 1 / growth.
 SETTLING = 5.0
-# Samples recorded per period of the highest mode of linear theory, if no sound is computed.
+# Number of samples recorded in a period of the highest mode of linear theory, if no sound is computed.
 SAMPLES = 20.0
-# Largest ratio of the swings in two successive windows of a steady limit cycle.
+# A limit cycle is steady if the ratio of its swings in two successive windows is at most this.
 STEADY = 1.25
-# Fraction of the growth by linear theory below which a motion has left it.
+# A motion has left linear theory if it grows by less than this fraction of the growth there.
 BENT = 0.25
-# Swing, absolute and over the largest of the run, below which a vibration has died; number of pieces compared.
+# A vibration has died if its swing is below the first value, and below the second relative to the largest swing of the
+# run; number of pieces compared.
 DEAD, FADED, PIECES = 0.01, 0.1, 20
 
 

@@ -30,7 +30,7 @@ def client_of(address: str) -> Any:
     with named_extras():
         from distributed import Client
     try:
-        # Not the default client of this process: one that cannot connect would remain the default.
+        # The client is not the default of this process, since one that cannot connect would remain the default.
         return Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise ArgumentError("scheduler", "answer", address, got=f"{address!r}: {message_of(error)}") from None

@@ -25,7 +25,7 @@ from ..system import System
 Value = float | str
 Values = Mapping[str, Value]
 Run = xr.Dataset | PlainRecord
-# Names of the variables of every sweep.
+# Variables that every sweep has.
 OWN = ("ended", "message", "point")
 
 
@@ -127,7 +127,7 @@ def _regime_column(name: str) -> Column:
     return Column(name, "" if name == "regime" else units, meaning, is_text=name == "regime")
 
 
-# To add a measure: an entry here, and a row in the table of docs/command-line.rst.
+# To add a measure, add an entry here and a row to the table of docs/command-line.rst.
 MEASURES = {
     measure.name: measure
     for measure in (

@@ -142,7 +142,7 @@ class Parts:
             path.unlink(missing_ok=True)
         for path in self.folder.glob(".stridula-*"):
             path.unlink(missing_ok=True)
-        # Last, so that a folder with parts always has a description.
+        # The description is deleted last, so that a folder with parts always has one.
         self._description.unlink(missing_ok=True)
         with suppress(OSError):
             self.folder.rmdir()

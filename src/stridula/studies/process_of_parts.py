@@ -15,7 +15,7 @@ from .task import use_one_thread
 def main() -> None:
     """Answer requests until the input ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # Keeps output printed by functions out of the answers.
+    # This keeps output printed by functions out of the answers.
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     asked = sys.stdin.buffer

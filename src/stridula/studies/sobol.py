@@ -24,7 +24,7 @@ MOST_SAMPLES, MOST_RESAMPLES = 2**16, 100_000
 BOUNDS = ("low", "high")
 # Attributes of a sweep that record its origin.
 ORIGIN = ("title", "scenario", "function", "stridula_version")
-# Fewer samples give no interval.
+# With fewer samples there is no interval.
 FEWEST = 8
 
 
@@ -101,7 +101,7 @@ def sensitivity(
     messages = failures(found)
     data["runs"], data["failed"] = ((), len(points)), ((), len(messages))
     if "regime" in found:
-        # The two sets are independent draws, the mixed ones are not.
+        # The two sets are independent draws; the mixed ones are not.
         data |= _probabilities(found["regime"].values[: 2 * samples], confidence)
         coordinates["regime"] = list(REGIMES)
     origin = {name: found.attrs[name] for name in ORIGIN if name in found.attrs}
@@ -191,7 +191,7 @@ def _indices(
 
 def _sobol(sets: Array) -> tuple[Array, Array]:
     """Return first-order and total-order indices of values at the sets A, B and the mixed ones, shape (parameters,)."""
-    # The estimators of scipy's sobol_indices, which accepts only powers of 2.
+    # The estimators are those of scipy's sobol_indices, which accepts only powers of 2.
     whole = sets[:2].ravel()
     mean, variance = whole.mean(), whole.var()
     if variance == 0.0:

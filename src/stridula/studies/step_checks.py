@@ -18,13 +18,15 @@ from ..records import checked
 from ..records.changes import played
 from ..scenarios.load import load_scenario
 
-# Difference of the forces over their fluctuation above which two runs have parted.
+# Two runs have parted if their forces differ by more than this fraction of the fluctuation.
 PARTED = 0.1
-# Windows of a record in which runs are compared and their growth is sought.
+# Number of windows of a record in which runs are compared and their growth is measured.
 WINDOWS = 100
-# Growth: least windows, least rise of the fluctuation and largest scatter of its logarithm about a straight line.
+# Conditions for growth: smallest number of windows, smallest rise of the fluctuation, and largest scatter of its
+# logarithm about a straight line.
 FEWEST, RISE, SCATTER = 8, 3.0, 0.1
-# Changes at half the step below which a step is fine enough: relative, in decibels, and in shares of the time.
+# A step is fine enough if halving it changes results by less than this: relative, in decibels, and in shares of the
+# time.
 RELATIVE, DECIBELS, SHARE = 0.01, 0.5, 0.02
 NUMBERS = {"frequency": ("Hz", RELATIVE), "level": ("dB", DECIBELS), "growth": ("1/s", RELATIVE)}
 SHARES = ("separated", "sticking", "sliding")

@@ -207,7 +207,7 @@ def followed(modes: Sequence[Sequence[Mapping[str, Any]]], before: Sequence[Sequ
     names: list[list[int]] = []
     last_seen: dict[int, float] = {}
     for heard, near in zip(heights, before, strict=True):
-        # A mode missing at a neighbour is compared with the last point that had it.
+        # A mode that a neighbour lacks is compared with that of the last point that had it.
         known = last_seen | {name: f for at in near for name, f in zip(names[at], heights[at], strict=True)}
         labels, row = list(known), [-1] * len(heard)
         if labels and len(heard):

@@ -21,7 +21,7 @@ from .survey_task import SurveyTask
 from .surveyed import check_names, surveyed
 from .task import Outcome
 
-# Points computed together; each needs several runs.
+# Number of points computed together; each needs several runs.
 POINTS_OF_A_PART = 1
 
 

@@ -18,7 +18,7 @@ from .sources import SystemOf, varying
 from .swept import check_names, swept
 from .task import Outcome, Task
 
-# Points computed together on any machine: they share a time step, and their runs are computed side by side.
+# Number of points computed together on any machine; their runs have the same time step and are computed side by side.
 POINTS_OF_A_PART = 64
 
 

@@ -8,14 +8,15 @@ import xarray as xr
 from ..arrays import Array
 from ..linear.reach import ModesAtRest
 
-# Fraction of a mode's reach up to which growth is measured: well below one, since laws of friction and bent tracks
-# are linear for small motions only.
+# Growth is measured up to this fraction of a mode's reach: well below one, since laws of friction and bent tracks are
+# linear only for small motions.
 LINEAR = 0.05
-# Largest amplitude of other modes over that of a mode whose growth is measured.
+# Largest amplitude of other modes, relative to that of the mode whose growth is measured.
 FOREIGN = 1e-3
-# Swing of other modes started by rounding.
+# Swing of other modes that starts from rounding.
 ROUNDING = 1e-12
-# Fewest periods, and least growth as an exponent of e, for a measurement of growth; samples compared per period.
+# Smallest number of periods, and smallest growth as an exponent of e, in a measurement of growth; number of samples
+# compared in a period.
 FEWEST_PERIODS, LEAST_GROWTH, SAMPLES_OF_A_PERIOD = 1.0, 0.5, 7.0
 # Largest relative error of the growth due to motion that one mode does not explain: a share u of such motion lets the
 # roots of the recurrence decay by about u² in each of its intervals.

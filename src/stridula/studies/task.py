@@ -114,7 +114,7 @@ class Task:
             workers=workers,
             watchers=[lambda progress: watch()],
             errors="return",
-            # Labels take longer than the named measures, which do not need them.
+            # Labelling takes longer than the named measures, which need no labels.
             labelled=bool(self.asked.functions),
             variables=self.asked.variables,
             **self._options(scenarios[0]),
@@ -122,7 +122,7 @@ class Task:
         for outcome, result in zip(outcomes, results, strict=True):
             if isinstance(result, Exception):
                 result = {"ended": NOT_STARTED, "message": message_of(result), "values": {}}
-            # A failure of the system, which came first, is reported.
+            # The failure of the system came first and is the one reported.
             message = outcome["message"] or result["message"]
             values: dict[str, Value] = outcome["values"] | result["values"]
             outcome |= {"ended": result["ended"], "message": message, "values": values}

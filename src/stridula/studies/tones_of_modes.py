@@ -12,9 +12,9 @@ from ..arrays import Array
 
 # Largest number of tones kept, and their lowest level relative to the strongest [dB].
 MOST, FAINTEST = 8, -40.0
-# Width of the bands of the spectrum, and lowest tone, over the resolution of the window.
+# Width of the bands of the spectrum, and lowest tone, relative to the resolution of the window.
 BANDS, LOWEST = 4.0, 4.0
-# Highest multiple of half of a tone that is recognised.
+# Highest multiple of half the frequency of a tone that is recognised.
 HIGHEST_MULTIPLE = 40
 
 

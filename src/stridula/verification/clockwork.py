@@ -14,7 +14,7 @@ from ..lowering.schemes import ExactModal
 from .case import Case, Curve, Outcome, Row, Sketch
 from .systems.on_belts import Slider, rubbing_of
 
-# A mass of 1 kg that swings once a second, pressed by the force that its spring has at one metre.
+# The mass is 1 kg and swings once a second, pressed by the force of its spring at a stretch of one metre.
 STIFFNESS = 4.0 * pi**2
 LAWS: dict[str, FrictionLaw] = {
     "static and kinetic": StaticKinetic(0.6, 0.3),

@@ -8,7 +8,7 @@ from ..scenarios import list_scenarios, load_scenario
 from ..studies.step_checks import Moved, check_step
 from .case import Case, Curve, Outcome, Row, Sketch
 
-# Share of the duration of a case that is run, and of one with surfaces in contact, which take longer.
+# Share of the duration of a case that is run; smaller for cases with surfaces in contact, which take longer.
 BEGINNING, OF_SURFACES = 0.2, 0.02
 REASON = "an engineer's accuracy: 1 % in frequency and growth, 0.5 dB in level, 0.02 in shares of the time"
 RELATIVE = ("frequency", "growth")

@@ -31,9 +31,10 @@ from .systems.bars import (
     front,
 )
 
-# Just below 1, since the limit itself is refused.
+# The number is just below 1, since the limit itself is refused.
 ONE = 0.9999
-# Peak over the plateau less 1, lumped mass and central differences with forward-increment multipliers.
+# Printed peaks relative to the plateau, less 1, with lumped mass and central differences with forward-increment
+# multipliers.
 PRINTED_PEAKS = {ONE: 0.0, 0.9: 0.026, 0.5: 0.079}
 
 

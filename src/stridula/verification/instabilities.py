@@ -62,7 +62,7 @@ def hoffmann_case() -> Outcome:
         run = model.run(0.9, scheme, step, duration)
         curves.append(Curve(run["time"].values, run["displacement"].values[:, 0], f"{scheme.name}, friction 0.9"))
         limit = _limit_undamped(model, 0.6, 0.9, scheme, step, duration)
-        # The discriminant is a difference of squares, which are off by 2 |s|² (W h)² / 12 each, over its slope 16 / 3.
+        # The discriminant is a difference of squares, each with an error of 2 |s|² (W h)² / 12; its slope is 16 / 3.
         off = 8.0 * sqrt(2.0) * 2.0 * bound(model, step) / (16.0 / 3.0)
         reason = "second order, (W h)² / 12 of each exponent, over the slope of the discriminant"
         return [

@@ -87,7 +87,7 @@ def lugre() -> Outcome:
 
 
 AGE = RateAndState(reference=0.6, a=0.010, b=0.015, slip_distance=1e-3, velocity=1e-3)
-# So heavy that friction hardly changes its velocity, and the slip velocity is known before and after.
+# The mass is so heavy that friction hardly changes its velocity: slip velocities are known before and after.
 HEAVY, BEFORE, AFTER = 1e4, 1e-3, 1e-2
 
 
@@ -135,8 +135,8 @@ def age_steps() -> Outcome:
         for word in ("aging", "slip"):
             run = _stepped(word, duration, step, scheme)
             ratio = run["tangential_force"].values / run["normal_force"].values
-            # With one step per sample, a force is that at the start of the step; the first is that of the start, which
-            # is a mean over the step after it.
+            # With one step per sample, each force is that at the start of its step. The first one is that of the start,
+            # which is a mean over the step after it.
             ratio = ratio[1:]
             instants = run["time"].values[1:] - step
             known = velocity_step(word, instants)

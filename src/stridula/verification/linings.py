@@ -22,7 +22,7 @@ from .case import Case, Curve, Outcome, Row, Sketch
 from .prony import exponents, only_sliding
 from .systems.mode_coupling import AT_CONTACT, GROUNDED
 
-# Frequencies of a mass on its contact [Hz], and periods over which its phase is followed.
+# Frequencies of a mass on its contact [Hz], and number of periods over which its phase is followed.
 VIBRATIONS, PERIODS = (1e3, 1e4, 3e4, 1e5), 200
 STEEL = Material(2.1e11, 7800.0, 0.3)
 # Radius [m] and speed [m/s] of each ball.
@@ -31,7 +31,8 @@ BALLS = ((1e-2, 1.0), (1e-3, 0.1), (5e-2, 0.01))
 LASTS = 2.943275
 # Frequencies of the squeal [Hz], coefficients of friction for small motion and for the cycle with lift-off.
 SQUEALS, SMALL, LARGE = (300.0, 1e3, 2e3, 5e3), (0.76, 0.8, 0.9), (0.8, 0.9, 1.0)
-# Damping of the mass in its cycle, times mass and the root of stiffness over mass, and the cycles until it is reached.
+# Damping of the mass in its cycle, relative to the root of mass times stiffness, and number of cycles until the cycle
+# is reached.
 DAMPING, SETTLED = 0.05, 40.0
 
 
@@ -67,7 +68,7 @@ def vibration() -> Outcome:
 def _frequency(time: Array, motion: Array, rate: float) -> float:
     """Return the angular frequency of a sampled sine near `rate`, from its phase over the run."""
     phases, middles = [], []
-    # So short that the phase of a frequency 10 % off turns by less than half a turn from part to part.
+    # The parts are so short that the phase of a frequency 10 % off turns by less than half a turn from one to the next.
     for part in np.array_split(np.arange(time.size), PERIODS // 4):
         waves = np.stack([np.sin(rate * time[part]), np.cos(rate * time[part]), np.ones(part.size)], axis=-1)
         sine, cosine, _ = np.linalg.lstsq(waves, motion[part], rcond=None)[0]

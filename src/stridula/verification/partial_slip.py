@@ -62,10 +62,10 @@ def press_and_pull(squares: int, pulled: float = PULLED) -> Found:
     distance = np.linalg.norm(places, axis=1)
     near = distance < known.radius + side
     places, distance = places[near], distance[near]
-    # Ball and plane are equal: twice the compliance of one.
+    # Ball and plane are equal, so that the compliance is twice that of one.
     material = Material(SHEAR * (1.0 + POISSON), 1000.0, POISSON)
     plane = ModalBody.half_space(material, places, side, coupled=False, name="plane")
-    # A mass and a damping that bring the ball to rest within a few steps without oscillation.
+    # Mass and damping are chosen so that the ball comes to rest within a few steps without oscillation.
     rate = 1.2 / STEP
     mass = 1.5 * PRESSED / known.approach / rate**2
     ball = ModalBody(np.zeros(3), {"middle": np.eye(3) / sqrt(mass)}, 2.0 * rate, name="ball")
@@ -119,14 +119,14 @@ def _rows(known: Known, found: Known, side: float, grid: str) -> list[Row]:
     # The mean gap of a ball over a square exceeds that at its middle by side² / 12 R.
     gap, half = side**2 / (12.0 * RADIUS), 0.5 * side
     share, slipping = gap / known.approach, known.radius**2 - known.stuck**2
-    # Proportional to the approach of the whole contact less that of the sticking part (Cattaneo).
+    # The shift is proportional to the approach of the whole contact less that of the sticking part (Cattaneo).
     pulled = 2.0 * share * known.radius**2 / slipping
     by_gap = "gap in the middle of a square for its mean"
     return [
         Row(f"{grid}: radius of contact", known.radius, found.radius, half, "half a square", "m"),
         Row(f"{grid}: radius that sticks", known.stuck, found.stuck, half, "half a square", "m"),
         Row(f"{grid}: approach", known.approach, found.approach, gap, by_gap, "m"),
-        # The middle square also has the mean of its pressure.
+        # The pressure in the middle square is a mean, too.
         Row(f"{grid}: peak pressure", known.peak, found.peak, 2.0 * share * known.peak, f"{by_gap}, twice", "Pa"),
         Row(f"{grid}: shift", known.shift, found.shift, pulled * known.shift, f"{by_gap}, twice", "m"),
     ]

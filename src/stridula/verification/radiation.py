@@ -24,8 +24,8 @@ from .case import Case, Curve, Outcome, Row, Sketch
 AIR = Air()
 STEEL = Material(2.1e11, 7800.0)
 SIDE = 0.4
-# Sample rate over the frequency of interest, and attenuation [dB] of the errors of fractional delays: the fields of
-# even modes at low frequency nearly cancel, down to 1e-5.
+# Sample rate relative to the frequency of interest, and attenuation [dB] of the errors of fractional delays: at low
+# frequency, the fields of even modes nearly cancel, down to 1e-5.
 SAMPLES = 20.0
 ATTENUATION = 150.0
 # Distance of listeners in the far field, over the size of the source.

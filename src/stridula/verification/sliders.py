@@ -129,8 +129,8 @@ def belt_without_jump() -> Outcome:
         place = run["displacement"].values[:, 0] - middle
         curves.append(Curve(run["time"].values, place, scheme.name))
         last = place[run["time"].values > begin + (cycles - 2) * 2.0 * pi / angular]
-        # The limit is reached within a step, v h away; each time it grazes the belt's velocity adds the effect
-        # of the spring within a step.
+        # The limit is reached within a step, so the mass is at most v h away. Each time it grazes the belt's velocity,
+        # the effect of the spring within a step is added.
         tolerance = same.belt * step + cycles * swing * (angular * step) ** 2
         reason = "leaves within v h of the limit; grazes the belt for a step a cycle: v h + n (v/w) (w h)²"
         return [Row("amplitude after 30 cycles", swing, float(np.ptp(last) / 2), tolerance, reason, "m", scheme.name)]

@@ -87,7 +87,8 @@ def across() -> Outcome:
         times = (np.arange(periods) + 0.25) * per_period * step
         curves.append(Curve(times, 1e3 * swings, scheme.name, marks=True))
         ratio = -float(np.polyfit(times, np.log(swings), 1)[0]) / own
-        # Peaks between samples, and the slip velocity of friction, from three slips: both (w h)² / 2 of the whole.
+        # Peaks between samples, and the slip velocity of friction from three slips, both have a relative error of
+        # (w h)² / 2.
         tolerance = 2.0 * (own * step) ** 2 * known + 0.5 * (own * step) ** 2 / (periods * own * per_period * step)
         return [Row("damping ratio, decay", known, ratio, tolerance, "sampling and step, (w h)²", "1", scheme.name)]
 

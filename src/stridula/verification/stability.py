@@ -27,7 +27,7 @@ PRINTED_GROWING = ((1.1, ((3221.1, 1503.7),)), (1.5, ((891.4, 1454.0), (3486.1, 
 # Printed for the pair of 0.2 and 0.3 m: angle [°] and the first unstable multiple of 0.02.
 PRINTED_ONSETS = ((30.0, 0.58), (45.0, 1.02), (60.0, 1.74))
 GRID = 0.02
-# Least growth that counts [1/s]; beyond the onset it rises as the square root, to 20 within 1e-4.
+# Smallest growth that counts [1/s]. Beyond the onset growth rises as the square root, to 20 within 1e-4.
 COUNTS = 0.1
 
 

@@ -98,7 +98,7 @@ def coin(rings: int, around: int, speed: float, spin: float) -> tuple[System, Ar
 def spinning(rings: int = 4, around: int = 12, spin: float = 20.0) -> Outcome:
     """A coin stops sliding and spinning together, at one ratio of both for any start; here it starts at this ratio."""
     system, places = coin(rings, around, RATIO * RADIUS * spin, spin)
-    # Second order in the angle between the points of a ring.
+    # The error is of second order in the angle between the points of a ring.
     share, reason = (pi / around) ** 2 / 12.0, "second order of the distance of the points"
     curves = [Curve(np.array([0.0, 1.4]), np.full(2, RATIO), "closed form")]
 
@@ -147,7 +147,7 @@ def pin_on_disc() -> Outcome:
         starts = [InitialEquilibrium(held), InitialEquilibrium(held, mode="most unstable", amplitude=1e-9)]
         rest, run = (simulate(replace(system, drives=[*drives, start]), 8e-3, **asked) for start in starts)
         away = run["displacement"].values.ravel() - rest["displacement"].values.ravel()
-        # Means over whole periods, whole periods apart.
+        # The means are over whole periods and are whole periods apart.
         periods, time = round(3.0 / frequency * 1e5), run["time"].values
         sizes = [float(np.sqrt(np.mean(away[at : at + periods] ** 2))) for at in (50, 50 + 4 * periods)]
         seen = log(sizes[1] / sizes[0]) / float(time[50 + 4 * periods] - time[50])

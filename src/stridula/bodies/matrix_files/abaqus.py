@@ -53,7 +53,7 @@ def _layout(comma: str | None, width: int) -> Layout:
 
 
 def _bad_line(path: str | os.PathLike[str]) -> str:
-    """Return the error of the first line that is not an entry of a matrix, empty if all are."""
+    """Return the error message for the first line that is not a matrix entry, or an empty string."""
     layout = _usual_layout(path)
     with text_of(path) as file:
         return first_bad(file, 0, layout)

@@ -90,7 +90,7 @@ def _are_numbers(numbers: Array) -> bool:
 
 
 def first_bad(lines: Iterable[str], above: int, layout: Layout) -> str:
-    """Return the error of the first line that is not an entry, empty if all are; `above` lines come before them."""
+    """Return the error message for the first line, after `above` others, that is not an entry, or an empty string."""
     for number, line in enumerate(lines, above + 1):
         text = line.partition(layout.remark)[0].strip()
         if text and not _is_entry(text.split(layout.comma), layout.width):
