@@ -1,7 +1,6 @@
 """Bodies: everything that vibrates, reduced to mass-normalised modes and their traces."""
 
 from .axisymmetric_body import AxisymmetricBody, Held
-from .circular_path import CircularPath
 from .damping import Rayleigh, RisingDamping, SampledDamping
 from .finite_element_beam import FiniteElementBeam
 from .matrix_faces import MatrixFace
@@ -9,9 +8,10 @@ from .mesh_parts import MeshPart, read_parts
 from .modal_beam import ModalBeam
 from .modal_body import ModalBody
 from .modal_plate import Line, ModalPlate
-from .modes import Body, BodyPoint, HasRoot, Modes, has_root
+from .modes import Body, Modes
 from .paths import Path, Track, Waves, is_track
 from .point_mass import PointMass
+from .points import BodyPoint, CircularPath, HasRoot, has_root
 from .profiles import LineProfile, MeshProfile, Profile, RectangleProfile
 from .reduced_body import ReducedBody
 from .rigid_body import RigidBody

@@ -19,11 +19,11 @@ from ..histories import HISTORIES, Constant, History
 from ..ordinary import NotOrdinary, of_ordinary_size
 from .body_surfaces import HIGHEST, RingSurface, largest_part
 from .cards import HasCard
-from .circular_path import CircularPath
 from .damping import DampingLaw, checked_damping, damping_rates
 from .drawn_surfaces import DrawnRings, DrawnSurface
 from .long_searches import search_told
-from .modes import BodyPoint, Modes, hashed_once
+from .modes import Modes, hashed_once
+from .points import BodyPoint, CircularPath
 from .profile_mesh import ProfileMesh
 from .profiles import PROFILES, Profile
 from .ring_surfaces import cut_outline

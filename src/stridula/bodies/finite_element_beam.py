@@ -28,7 +28,8 @@ from .finite_elements import (
     element_stiffness,
 )
 from .matrix_input import numbers
-from .modes import BodyPoint, Modes, hashed_once
+from .modes import Modes, hashed_once
+from .points import BodyPoint
 from .prism_surfaces import beam_surface, has_outline
 from .sections import SHORTEST_WAVE, Circle, Material, Rectangle, Section
 

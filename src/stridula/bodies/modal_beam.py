@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from ..arrays import in_space
+from ..arrays import Array, in_space
 from ..checks import ArgumentError, at_least, instance, within
 from ..declared import Count, CountFrom0, Frequency, Length, Name, Own, Tension, check_declared
 from ..doubtful import doubts_of_size, warn_of
@@ -17,9 +17,10 @@ from ..ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .drawn_lines import places_between
-from .modes import Array, BodyPoint, Modes, hashed_once
+from .modes import Modes, hashed_once
 from .paths import Path, along_one_angle
 from .planes import InPlane, checked_plane
+from .points import BodyPoint
 from .prism_surfaces import beam_surface, has_outline
 from .sections import SHORTEST_WAVE, Circle, Material, Rectangle, Section
 

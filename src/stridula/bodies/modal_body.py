@@ -14,13 +14,13 @@ from ..arrays import Array
 from ..checks import ArgumentError, choice, count, counted, instance, listed
 from ..histories import Constant, History
 from .body_surfaces import HIGHEST, BodySurface, PointSurface, RingSurface, check_surface
-from .circular_path import CircularPath
 from .drawn_surfaces import Drawn, DrawnSurface, drawn_of, drawn_table
 from .half_space import half_space_shapes, surface_frame
 from .matrix_input import check_finite, numbers, rows_of
 from .modes import Body, Modes
 from .named_points import NamedPoints
 from .planes import checked_plane
+from .points import CircularPath
 from .sections import Material
 from .turning import Turning
 

@@ -17,10 +17,11 @@ from ..ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .drawn_lines import places_between
-from .modes import BodyPoint, Modes
+from .modes import Modes
 from .paths import Path, Waves, along_one_angle
 from .plane_stress import PlaneStress, lowest, plane_stress, rigid
 from .planes import InPlane, checked_plane
+from .points import BodyPoint
 from .prism_surfaces import cells_of, plate_mesh, prism_surface
 from .sections import SHORTEST_WAVE, Material
 

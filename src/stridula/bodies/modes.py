@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeGuard, TypeVar
+from typing import Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, counted
-
-if TYPE_CHECKING:
-    from .circular_path import CircularPath
-    from .turning import Turning
+from ..checks import counted
+from .turning import Turning
 
 
 @dataclass(frozen=True, repr=False)
@@ -156,93 +153,3 @@ class Body(Protocol):
 
     def check_position(self, position: Any) -> None:
         """Raise ValueError if there is no point at `position`."""
-
-
-class HasRoot(Protocol):
-    """A body with a driven end, its root."""
-
-    @property
-    def root(self) -> BodyPoint:
-        """The driven end."""
-
-    @property
-    def tip_support(self) -> str:
-        """Support of the other end."""
-
-    def modes(self, held_x: bool = False) -> Modes:
-        """Return the modes; with `held_x` those with the root held along x."""
-
-    def root_lever(self, position: Any) -> Array:
-        """Return forces and moment at the root for forces at `position` along world x and y, shape (3, 2)."""
-
-    def root_reaction(self, held_x: bool = False) -> Any:
-        """Return the force of the support of the root as a function of the motion."""
-
-
-def has_root(body: Any) -> TypeGuard[HasRoot]:
-    """Return whether a body has a driven end."""
-    return hasattr(body, "root_reaction")
-
-
-@dataclass(frozen=True)
-class BodyPoint:
-    """A point of a body.
-
-    Attributes
-    ----------
-    body : FiniteElementBeam, ModalBeam, ModalPlate, ReducedBody or PointMass
-        The body.
-    position : float, tuple of float or str
-        On beams the distance along the axis from the first end [m]: from the tip of a slider, from the left end of a
-        track. On plates the abscissa along the line, or the distances along length and width [m]. On bodies of
-        revolution radius, angle and height (r, theta, z) [m, rad, m]. On other bodies the name of the point.
-
-    Raises
-    ------
-    ValueError
-        If the position is not on the body.
-    """
-
-    body: Body
-    position: float | tuple[float, ...] | str
-
-    def __post_init__(self) -> None:
-        check = getattr(self.body, "check_position", None)
-        if check is None or isinstance(self.body, type):
-            raise ArgumentError("body", "be a body of stridula", self.body)
-        if isinstance(self.position, np.generic):
-            # Comparing a NumPy number with a pair gives an array.
-            object.__setattr__(self, "position", self.position.item())
-        check(self.position)
-
-    @property
-    def label(self) -> str:
-        """Name, or the numbers of its position in full precision."""
-        return (
-            self.position if isinstance(self.position, str) else ", ".join(map(repr, np.ravel(self.position).tolist()))
-        )
-
-    @property
-    def point_name(self) -> str | None:
-        """Name among the points of its body, None for a position between them."""
-        if isinstance(self.position, str):
-            return self.position
-        named = ((name, getattr(self.body, name).position) for name in self.body.point_names)
-        return next((name for name, position in named if position == self.position), None)
-
-    @property
-    def place(self) -> Array | None:
-        """World place at rest [m], shape (3,), None if it is not known."""
-        found = getattr(self.body, "place", None)
-        return None if found is None else found(self.position)
-
-    @property
-    def circle(self) -> CircularPath | None:
-        """The closed path that it represents, None for a point alone."""
-        return None
-
-    @property
-    def turning_velocity(self) -> Array:
-        """World components of the velocity of the material there if the body turns [m/s], shape (3,)."""
-        found = getattr(self.body, "turning_velocity", None)
-        return np.zeros(3) if found is None else np.asarray(found(self.position))

@@ -7,7 +7,8 @@ from typing import ClassVar
 from ..checks import ArgumentError, choice
 from .body_surfaces import HIGHEST, BodySurface
 from .cards import HasCard
-from .modes import Body, BodyPoint
+from .modes import Body
+from .points import BodyPoint
 
 
 class NamedPoints(HasCard):

@@ -8,7 +8,8 @@ from typing import Any, Protocol, TypeGuard
 import numpy as np
 
 from ..arrays import Array
-from .modes import Body, BodyPoint
+from .modes import Body
+from .points import BodyPoint
 
 
 @dataclass(frozen=True)

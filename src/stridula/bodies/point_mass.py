@@ -11,8 +11,9 @@ from ..arrays import Array
 from ..checks import ArgumentError
 from ..declared import Name, Number, check_declared
 from .matrix_input import numbers
-from .modes import BodyPoint, Modes
+from .modes import Modes
 from .named_points import NamedPoints
+from .points import BodyPoint
 
 # Below this, stiffness over mass overflows.
 SMALLEST_MASS = 1e-100

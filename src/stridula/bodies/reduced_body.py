@@ -37,8 +37,9 @@ from .matrix_input import (
     stays_sparse,
     symmetric,
 )
-from .modes import BodyPoint, Modes
+from .modes import Modes
 from .named_points import NamedPoints
+from .points import BodyPoint
 from .reduction import Reduction, reduce_body
 from .solid_mesh import SolidMesh
 from .solid_places import FacePoints

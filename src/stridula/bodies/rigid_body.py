@@ -15,9 +15,10 @@ from ..checks import ArgumentError, instance
 from ..declared import Name, Number, Own, check_declared
 from ..doubtful import doubts_of_size, warn_of
 from .matrix_input import check_finite, numbers
-from .modes import BodyPoint, Modes
+from .modes import Modes
 from .named_points import NamedPoints
 from .point_mass import SMALLEST_MASS
+from .points import BodyPoint
 
 CENTRE = "centre"
 # Allowed relative asymmetry of an inertia, and relative excess of a principal moment over the sum of the others.

@@ -31,8 +31,9 @@ from .factorisation import dissection
 from .long_searches import search_told
 from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
 from .matrix_input import check_finite, numbers
-from .modes import BodyPoint, Modes
+from .modes import Modes
 from .named_points import NamedPoints
+from .points import BodyPoint
 from .sections import Material
 from .solid_elements import assembled
 from .solid_mesh import Face, SolidMesh, place_of
