@@ -62,8 +62,12 @@ cutoff = "2 MHz"
     ],
 )
 def test_heavy_scenes_are_refused_before_their_modes_are_computed(text, words, monkeypatch):
-    monkeypatch.setattr("stridula.bodies.solid_body.reduce_sparse", lambda *given: pytest.fail("a search is begun"))
-    monkeypatch.setattr("stridula.bodies.axisymmetric_body._families", lambda body: pytest.fail("a search is begun"))
+    monkeypatch.setattr(
+        "stridula.bodies.solids.solid_body.reduce_sparse", lambda *given: pytest.fail("a search is begun")
+    )
+    monkeypatch.setattr(
+        "stridula.bodies.revolution.axisymmetric_body._families", lambda body: pytest.fail("a search is begun")
+    )
     with pytest.raises(ValueError, match=f"^{words}"):
         playable("squeal", text, {})
 

@@ -22,8 +22,8 @@ FILES = sorted(path for path in ROOT.rglob("*.py") if "__pycache__" not in path.
 HEAVY = ("numba", "xarray", "matplotlib", "scipy", "pandas", "pydantic", "typer", "rich", "h5netcdf", "dask")
 # Packages and the modules that own them.
 OWNED = {
-    "skfem": ["bodies.fourier_elements", "bodies.solid_elements"],
-    "meshio": ["bodies.mesh_files", "bodies.solid_files"],
+    "skfem": ["bodies.revolution.fourier_elements", "bodies.solids.elements"],
+    "meshio": ["bodies.revolution.mesh_files", "bodies.solids.mesh_files"],
 }
 # Each takes a quarter of a second or more to import, or imports others that do.
 SLOW_PARTS = ("scipy.signal", "scipy.stats", "scipy.ndimage", "scipy.optimize", "scipy.interpolate")

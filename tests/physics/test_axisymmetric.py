@@ -12,9 +12,9 @@ from scipy.optimize import brentq
 from scipy.special import iv, ivp, jv, jvp, kv, kvp, spherical_jn, yv, yvp
 
 import stridula as st
-from stridula.bodies.axisymmetric_body import _solution
-from stridula.bodies.fourier_elements import fourier_elements
-from stridula.bodies.profile_modes import families
+from stridula.bodies.revolution.axisymmetric_body import _solution
+from stridula.bodies.revolution.fourier_elements import fourier_elements
+from stridula.bodies.revolution.profile_modes import families
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
 STIFF = st.Material(2.1e11, 7800.0, 0.0)

@@ -10,11 +10,11 @@ import pytest
 import scipy.sparse.linalg
 
 import stridula as st
-from stridula.bodies import solid_body
-from stridula.bodies.face_patches import patched
-from stridula.bodies.solid_body import _assembled
-from stridula.bodies.solid_places import face_mean
-from stridula.bodies.sparse_reduction import COMPLIANCE
+from stridula.bodies.reduction.sparse_reduction import COMPLIANCE
+from stridula.bodies.solids import solid_body
+from stridula.bodies.solids.face_patches import patched
+from stridula.bodies.solids.places import face_mean
+from stridula.bodies.solids.solid_body import _assembled
 from stridula.doubtful import DoubtfulValue
 from stridula.linear.equilibrium import find_equilibrium
 from stridula.linear.structure import Structure

@@ -18,7 +18,7 @@ from stridula.acoustics.recorded_motion import VARIABLE
 from stridula.acoustics.sheets import SheetDipoles, sheet_of
 from stridula.acoustics.sounding import sounding_of
 from stridula.acoustics.surface_pressures import SurfacePressures
-from stridula.bodies import solid_surfaces
+from stridula.bodies.solids import surfaces
 from stridula.places import origins_in_space
 from stridula.verification.open_air import air_carried
 
@@ -47,7 +47,7 @@ def pressed(track) -> st.System:
     block = st.SolidBody(replace(mesh, nodes=mesh.nodes @ TURN.T + THERE), STEEL, points={"tip": 0}, cutoff=2e4)
     with pytest.MonkeyPatch.context() as patch:
         # A coarse surface is faster.
-        patch.setattr(solid_surfaces, "MOST", 60)
+        patch.setattr(surfaces, "MOST", 60)
         assert len(block.surface().points) < 200
     contact = st.PointContact(block.at("tip"), track, at=0.06, friction=st.Coulomb(0.3))
     history = st.Sampled((0.0, 1e-3, 2e-3, 5e-3, 6e-3), (0.0, 1.0, 0.6, 1.0, 0.0))

@@ -10,7 +10,7 @@ import scipy.linalg
 import scipy.sparse
 
 import stridula as st
-from stridula.bodies.solid_body import _assembled
+from stridula.bodies.solids.solid_body import _assembled
 from stridula.doubtful import DoubtfulValue
 
 LINING = st.Material(5e9, 2500.0, 0.25)

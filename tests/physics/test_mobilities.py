@@ -9,7 +9,7 @@ import pytest
 
 import stridula as st
 from stridula import plot
-from stridula.bodies.finite_elements import assemble, element_mass, element_stiffness
+from stridula.bodies.beams_and_plates.finite_elements import assemble, element_mass, element_stiffness
 
 from .lattice import lattice
 

@@ -22,10 +22,11 @@ from stridula.acoustics.free_responses import free_responses
 from stridula.acoustics.redriven import redriven
 from stridula.acoustics.ring_sources import RingSources
 from stridula.acoustics.surface_pressures import SurfacePressures
-from stridula.bodies import ring_surfaces, solid_surfaces
 from stridula.bodies.body_surfaces import RingSurface, surface_of
-from stridula.bodies.cut_elements import cut_into_tetrahedra
-from stridula.bodies.solid_surfaces import cut_faces
+from stridula.bodies.revolution import ring_surfaces
+from stridula.bodies.solids import surfaces
+from stridula.bodies.solids.cut_elements import cut_into_tetrahedra
+from stridula.bodies.solids.surfaces import cut_faces
 from stridula.lowering import assemble
 from stridula.verification import open_air
 from stridula.verification.systems.discs import HERE, disc, struck
@@ -252,7 +253,7 @@ def test_thin_meshed_bodies_sound_as_the_same_bodies_of_revolution(thickness, di
 @pytest.mark.parametrize("wave", [10.0, 40.0])
 def test_a_thin_surface_sounds_as_thicker_ones(wave, monkeypatch):
     """With a thickness of a thirtieth and of a tenth of the width of its patches, for modes of the same amplitude."""
-    monkeypatch.setattr(solid_surfaces, "MOST", 200)
+    monkeypatch.setattr(surfaces, "MOST", 200)
     place, known = np.array([[0.1, 0.5, 0.1]]), None
     for thickness in (3e-3, 1e-3):
         plate = st.ModalPlate(STEEL, thickness, 0.3, 0.25, (1, 1))
@@ -264,7 +265,7 @@ def test_a_thin_surface_sounds_as_thicker_ones(wave, monkeypatch):
 
 def test_equations_too_ill_for_single_precision_are_solved_in_double(monkeypatch):
     """Those of a foil with wide patches, whose normal equations have no Cholesky factors in single precision."""
-    monkeypatch.setattr(solid_surfaces, "MOST", 200)
+    monkeypatch.setattr(surfaces, "MOST", 200)
     surface = SurfacePressures(st.ModalPlate(STEEL, 3e-5, 0.3, 0.25, (2, 2)).surface())
     asked: list[tuple] = []
     solved = surface_pressures.least_squares

@@ -9,10 +9,10 @@ import scipy.optimize
 import scipy.sparse
 
 import stridula as st
-from stridula.bodies.solid_body import _assembled
-from stridula.bodies.solid_elements import assembled
-from stridula.bodies.solid_kinds import KINDS
-from stridula.bodies.sparse_reduction import SparseProblem, reduce_sparse
+from stridula.bodies.reduction.sparse_reduction import SparseProblem, reduce_sparse
+from stridula.bodies.solids.elements import assembled
+from stridula.bodies.solids.kinds import KINDS
+from stridula.bodies.solids.solid_body import _assembled
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
 SMALL = {"mesh": st.SolidMesh.block((0.1, 0.03, 0.02), (4, 2, 1)), "materials": STEEL}

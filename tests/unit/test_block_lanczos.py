@@ -9,10 +9,10 @@ import pytest
 import scipy.sparse
 
 import stridula as st
-from stridula.bodies import factorisation, sparse_reduction
-from stridula.bodies.block_lanczos import WIDTH, Inverse, lowest
-from stridula.bodies.factorisation import LIBRARIES, factorised
-from stridula.bodies.sparse_reduction import SparseProblem, reduce_sparse
+from stridula.bodies.reduction import factorisation, sparse_reduction
+from stridula.bodies.reduction.block_lanczos import WIDTH, Inverse, lowest
+from stridula.bodies.reduction.factorisation import LIBRARIES, factorised
+from stridula.bodies.reduction.sparse_reduction import SparseProblem, reduce_sparse
 
 SIZE = 400
 EPS = float(np.finfo(float).eps)

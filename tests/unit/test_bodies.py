@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stridula as st
-from stridula.bodies.finite_elements import element_mass
+from stridula.bodies.beams_and_plates.finite_elements import element_mass
 from stridula.checks import at_least
 
 STEEL = st.Material(2.1e11, 7800.0)

@@ -10,7 +10,7 @@ import pytest
 from test_solid_files import STEEL, TIP, abaqus, mesh_of
 
 import stridula as st
-from stridula.bodies import solid_elements
+from stridula.bodies.solids import elements
 
 CCX = shutil.which("ccx")
 MISSING = "takes CalculiX: ccx of Debian's calculix-ccx is not there"
@@ -54,7 +54,7 @@ def test_frequencies_are_those_that_calculix_finds(kind, tmp_path, monkeypatch):
     if kind != "hexahedron":
         # For eight nodes CalculiX uses a mean volume strain; the mass of ten it integrates at four points, ours is
         # exact.
-        monkeypatch.setattr(solid_elements, "DEGREES", (2, 2, 2) if kind == "tetra10" else solid_elements.DEGREES)
+        monkeypatch.setattr(elements, "DEGREES", (2, 2, 2) if kind == "tetra10" else elements.DEGREES)
         solid = st.SolidBody.read(tmp_path / "stored.inp", {"steel": STEEL}, fixed=["clamp"], cutoff=60e3)
         np.testing.assert_allclose(solid.modes().frequency[:MODES], wanted, rtol=1e-5)
 

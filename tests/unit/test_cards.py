@@ -124,7 +124,7 @@ def test_cards_do_not_compute_modes_of_large_bodies(monkeypatch):
         raise AssertionError("looked for modes")
 
     fresh = st.SolidBody.block((0.1, 0.05, 0.021), (6, 3, 2), STEEL, cutoff=2e4)
-    monkeypatch.setattr("stridula.bodies.solid_body._searched", search)
+    monkeypatch.setattr("stridula.bodies.solids.solid_body._searched", search)
     facts = page(fresh).facts
     assert facts["modes"] == "found on first use, up to 20 kHz"
     assert "mass" not in facts

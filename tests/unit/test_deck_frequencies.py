@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import stridula as st
-from stridula.bodies import solid_elements
+from stridula.bodies.solids import elements
 
 # As Debian's calculix-ccx-test installs them.
 DECKS = Path("/usr/share/doc/calculix-ccx-test/examples/test")
@@ -46,7 +46,7 @@ def test_frequencies_are_those_of_calculix(name, tmp_path, monkeypatch):
     path = tmp_path / f"{name}.inp"
     path.write_text(deck, encoding="utf-8")
     (part,) = st.read_parts(path, scale=1e-3).values()
-    monkeypatch.setattr(solid_elements, "DEGREES", REDUCED)
+    monkeypatch.setattr(elements, "DEGREES", REDUCED)
     body = st.SolidBody(
         part.mesh,
         part.materials,

@@ -11,7 +11,7 @@ from test_solid_files import STEEL, abaqus, mesh_of
 from written_decks import brake_deck
 
 import stridula as st
-from stridula.bodies.solid_body import _assembled
+from stridula.bodies.solids.solid_body import _assembled
 from stridula.doubtful import DoubtfulValue
 
 CUTOFF = 60e3

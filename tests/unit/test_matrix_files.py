@@ -11,9 +11,8 @@ import pytest
 import scipy.io
 import scipy.sparse
 
-from stridula.bodies import FiniteElementBeam, Material, Rayleigh, Rectangle, ReducedBody
-from stridula.bodies.finite_elements import assemble, element_mass, element_stiffness
-from stridula.bodies.matrix_files import limits
+from stridula.bodies import FiniteElementBeam, Material, Rayleigh, Rectangle, ReducedBody, limits
+from stridula.bodies.beams_and_plates.finite_elements import assemble, element_mass, element_stiffness
 
 STEEL, STRIP = Material(2.1e11, 7800.0), Rectangle(0.020, 0.004)
 ELEMENTS = 5

@@ -11,8 +11,8 @@ from written_decks import brake_deck
 
 import stridula as st
 from stridula import plot
-from stridula.bodies import mesh_quality
-from stridula.bodies.solid_kinds import KINDS
+from stridula.bodies.solids import mesh_quality
+from stridula.bodies.solids.kinds import KINDS
 
 STEEL = "MAT1,7,210000.,,.3,7.8-9\n"
 WEDGES = """BEGIN BULK

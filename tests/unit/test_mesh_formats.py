@@ -12,8 +12,8 @@ import pytest
 from test_mesh_command import random_mesh
 
 import stridula as st
-from stridula.bodies.cut_elements import CUT_KINDS
-from stridula.bodies.solid_kinds import KINDS
+from stridula.bodies.solids.cut_elements import CUT_KINDS
+from stridula.bodies.solids.kinds import KINDS
 from stridula.doubtful import DoubtfulValue
 
 # A block of 50 mm x 40 mm x 30 mm with groups, in each kind of elements.

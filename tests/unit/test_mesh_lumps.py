@@ -9,7 +9,7 @@ import pytest
 from test_decks import box_part, cube
 
 import stridula as st
-from stridula.bodies.mesh_parts import MeshSpring
+from stridula.bodies.solids.mesh_parts import MeshSpring
 from stridula.doubtful import DoubtfulValue
 
 NODES = f"*NODE\n{cube()}*NODE\n9, 5, 5, 5\n"

@@ -22,7 +22,7 @@ from stridula.bodies import (
     Rectangle,
     ReducedBody,
 )
-from stridula.bodies.finite_elements import assemble, element_mass, element_stiffness
+from stridula.bodies.beams_and_plates.finite_elements import assemble, element_mass, element_stiffness
 from stridula.bodies.matrix_input import ROUND_OFF
 
 STEEL, STRIP = Material(2.1e11, 7800.0), Rectangle(0.020, 0.004)

@@ -12,8 +12,8 @@ import scipy.io
 import stridula as st
 from stridula import disk
 from stridula.acoustics import wav
-from stridula.bodies.matrix_files import limits
-from stridula.bodies.profiles import MeshProfile
+from stridula.bodies import limits
+from stridula.bodies.revolution.profiles import MeshProfile
 from stridula.cli.points import points_of
 from stridula.records import files
 

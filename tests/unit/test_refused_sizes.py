@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import stridula as st
-from stridula.bodies import profile_mesh, sparse_reduction
-from stridula.bodies.profile_mesh import ProfileMesh
+from stridula.bodies.reduction import sparse_reduction
+from stridula.bodies.revolution import profile_mesh
+from stridula.bodies.revolution.profile_mesh import ProfileMesh
 
 STEEL = st.Material(210e9, 7800.0, 0.3)
 THIN = """base = "glass"
@@ -28,8 +29,10 @@ def nothing_computed(monkeypatch):
         assert len(outline) < 2 * profile_mesh.MOST_MADE
         return
 
-    monkeypatch.setattr("stridula.bodies.profile_mesh._first_crossing", crossing)
-    monkeypatch.setattr("stridula.bodies.axisymmetric_body._families", lambda body: pytest.fail("modes are computed"))
+    monkeypatch.setattr("stridula.bodies.revolution.profile_mesh._first_crossing", crossing)
+    monkeypatch.setattr(
+        "stridula.bodies.revolution.axisymmetric_body._families", lambda body: pytest.fail("modes are computed")
+    )
 
 
 @pytest.mark.usefixtures("nothing_computed")
@@ -61,7 +64,7 @@ def test_a_size_of_cells_allows_a_higher_cutoff():
 
 
 def test_unknowns_are_those_of_the_elements():
-    fourier_elements = pytest.importorskip("stridula.bodies.fourier_elements")
+    fourier_elements = pytest.importorskip("stridula.bodies.revolution.fourier_elements")
     nodes = np.array([[1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [1.0, 1.0], [2.0, 1.0], [3.0, 1.0]])
     for cells in ([[0, 1, 4, 3], [1, 2, 5, 4]], [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]]):
         mesh = ProfileMesh(nodes, np.array(cells), {"body": np.arange(len(cells))})
@@ -95,7 +98,7 @@ def test_crossings_are_found_wherever_they_are(across):
 )
 def test_meshes_of_too_many_nodes_are_refused_before_they_are_made(make, monkeypatch):
     for name in ("block", "sector", "extrusion"):
-        monkeypatch.setattr(f"stridula.bodies.solid_shapes.{name}", lambda *given: pytest.fail("it is made"))
+        monkeypatch.setattr(f"stridula.bodies.solids.shapes.{name}", lambda *given: pytest.fail("it is made"))
     with pytest.raises(st.ArgumentError, match=r"^(divisions|layers) must make at most 200000 nodes, got \d+"):
         make()
 
@@ -103,15 +106,15 @@ def test_meshes_of_too_many_nodes_are_refused_before_they_are_made(make, monkeyp
 def test_the_number_of_nodes_is_known_beforehand(monkeypatch):
     given = ((1.0, 1.0, 1.0), (3, 4, 5))
     nodes = len(st.SolidMesh.block(*given).nodes)
-    monkeypatch.setattr("stridula.bodies.solid_mesh.MOST_NODES", nodes)
+    monkeypatch.setattr("stridula.bodies.solids.solid_mesh.MOST_NODES", nodes)
     st.SolidMesh.block(*given)
-    monkeypatch.setattr("stridula.bodies.solid_mesh.MOST_NODES", nodes - 1)
+    monkeypatch.setattr("stridula.bodies.solids.solid_mesh.MOST_NODES", nodes - 1)
     with pytest.raises(st.ArgumentError, match=rf"must make at most {nodes - 1} nodes, got {nodes}$"):
         st.SolidMesh.block(*given)
 
 
 def test_a_search_for_far_too_many_modes_is_not_begun(monkeypatch):
-    monkeypatch.setattr("stridula.bodies.solid_body.reduce_sparse", lambda *given: pytest.fail("it is begun"))
+    monkeypatch.setattr("stridula.bodies.solids.solid_body.reduce_sparse", lambda *given: pytest.fail("it is begun"))
     body = st.SolidBody.block((0.1, 0.1, 0.1), (7, 7, 7), STEEL, cutoff=1e6)
     with pytest.raises(st.ArgumentError, match=r"^cutoff must leave at most 2000 modes of a mesh, got 1e.06 Hz, be"):
         body.modes()

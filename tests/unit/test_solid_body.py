@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import stridula as st
-from stridula.bodies import factorisation, sparse_reduction
-from stridula.bodies.factorisation import dissection, factorised
-from stridula.bodies.solid_body import _assembled
+from stridula.bodies.reduction import factorisation, sparse_reduction
+from stridula.bodies.reduction.factorisation import dissection, factorised
+from stridula.bodies.solids.solid_body import _assembled
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
 CUBE = st.SolidMesh.block((1.0, 1.0, 1.0), (1, 1, 1))

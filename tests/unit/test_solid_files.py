@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import stridula as st
-from stridula.bodies.cut_elements import CUT_KINDS
-from stridula.bodies.solid_elements import assembled
-from stridula.bodies.solid_kinds import KINDS, outer_faces
+from stridula.bodies.solids.cut_elements import CUT_KINDS
+from stridula.bodies.solids.elements import assembled
+from stridula.bodies.solids.kinds import KINDS, outer_faces
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
 BLOCK = st.SolidMesh.block((0.1, 0.04, 0.03), (3, 2, 1))

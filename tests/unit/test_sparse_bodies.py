@@ -9,9 +9,9 @@ import scipy.linalg
 import scipy.sparse
 
 import stridula as st
-from stridula.bodies import reduced_body
-from stridula.bodies.reduction import reduce_body
-from stridula.bodies.sparse_reduction import DENSE
+from stridula.bodies.matrices import reduced_body
+from stridula.bodies.reduction.dense_reduction import reduce_body
+from stridula.bodies.reduction.sparse_reduction import DENSE
 
 SIZE = 5000
 POINTS = {"end": (SIZE - 1, None), "middle": (SIZE // 2, None)}

@@ -1,23 +1,23 @@
 """Bodies: everything that vibrates, reduced to mass-normalised modes and their traces."""
 
-from .axisymmetric_body import AxisymmetricBody, Held
+from .beams_and_plates.finite_element_beam import FiniteElementBeam
+from .beams_and_plates.modal_beam import ModalBeam
+from .beams_and_plates.modal_plate import Line, ModalPlate
 from .damping import Rayleigh, RisingDamping, SampledDamping
-from .finite_element_beam import FiniteElementBeam
-from .matrix_faces import MatrixFace
-from .mesh_parts import MeshPart, read_parts
-from .modal_beam import ModalBeam
-from .modal_body import ModalBody
-from .modal_plate import Line, ModalPlate
+from .masses.point_mass import PointMass
+from .masses.rigid_body import RigidBody
+from .matrices.faces import MatrixFace
+from .matrices.modal_body import ModalBody
+from .matrices.reduced_body import ReducedBody
 from .modes import Body, Modes
 from .paths import Path, Track, Waves, is_track
-from .point_mass import PointMass
 from .points import BodyPoint, CircularPath, HasRoot, has_root
-from .profiles import LineProfile, MeshProfile, Profile, RectangleProfile
-from .reduced_body import ReducedBody
-from .rigid_body import RigidBody
+from .revolution.axisymmetric_body import AxisymmetricBody, Held
+from .revolution.profiles import LineProfile, MeshProfile, Profile, RectangleProfile
 from .sections import Circle, Material, Rectangle, Section
-from .solid_body import SolidBody
-from .solid_mesh import SolidMesh
+from .solids.mesh_parts import MeshPart, read_parts
+from .solids.solid_body import SolidBody
+from .solids.solid_mesh import SolidMesh
 from .turning import Turning
 
 __all__ = [

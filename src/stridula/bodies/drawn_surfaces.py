@@ -10,8 +10,6 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError, counted, listed
-from .solid_kinds import outer_faces
-from .solid_mesh import SolidMesh
 
 # Least number of angles at which a surface of revolution is drawn, and angles per wave.
 FEWEST_ANGLES, ANGLES_OF_WAVE = 60, 5
@@ -57,28 +55,6 @@ class DrawnSurface:
         vectors = np.cross(apart, np.roll(apart, -1, axis=1)).sum(axis=1)
         size = np.linalg.norm(vectors, axis=1, keepdims=True)
         return np.asarray(vectors / np.where(size > 0.0, size, 1.0))
-
-
-def surface_of_mesh(mesh: SolidMesh, shapes: Array) -> DrawnSurface:
-    """Return the faces that belong to one element only, with the middles of their edges.
-
-    Parameters
-    ----------
-    mesh : SolidMesh
-        The mesh.
-    shapes : ndarray, shape (3 nodes, modes)
-        Shapes of the modes at its nodes.
-    """
-    kind = mesh.element_kind
-    corners = len(kind.faces[0])
-    element, side = outer_faces(kind, mesh.elements).T
-    outer = mesh.elements[element[:, None], kind.face_nodes[side]]
-    if kind.middles:
-        # Round the face: corner, middle of the next edge, corner.
-        outer = np.stack([outer[:, :corners], outer[:, corners : 2 * corners]], axis=2).reshape(len(outer), -1)
-    used, polygons = np.unique(outer, return_inverse=True)
-    moved = shapes.reshape(len(mesh.nodes), 3, -1)[used]
-    return DrawnSurface(mesh.nodes[used], polygons.reshape(outer.shape), moved)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

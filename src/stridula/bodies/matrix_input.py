@@ -14,7 +14,7 @@ from ..arrays import Array
 from ..checks import ArgumentError, instance
 from ..declared import DAMPING_RATIO
 from .damping import DampingLaw, checked_damping, is_damping_law
-from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
+from .limits import LARGEST_SIZE, LARGEST_SPARSE, check_size
 
 SYMMETRY = 1e-8
 

@@ -13,9 +13,9 @@ from rich.table import Table
 
 from ..arrays import Array
 from ..bodies import Material, MeshPart, SolidMesh, read_parts
-from ..bodies.mesh_parts import MeshSpring
-from ..bodies.mesh_quality import SLIVER
 from ..bodies.sections import doubts_of_material
+from ..bodies.solids.mesh_parts import MeshSpring
+from ..bodies.solids.mesh_quality import SLIVER
 from ..checks import ArgumentError, choice, counted, listed, positive
 from ..doubtful import LARGEST_SIZE, DoubtfulValue, LeftOut
 from ..scenarios.quantities import quantity

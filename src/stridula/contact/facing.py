@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..bodies import AxisymmetricBody, SolidBody, SolidMesh
-from ..bodies.solid_places import FacePoints
+from ..bodies.solids.places import FacePoints
 from ..checks import ArgumentError
 from .rigid_track import RigidTrack
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..bodies import AxisymmetricBody, ReducedBody, SolidBody
-from ..bodies.solid_overlays import overlaid
-from ..bodies.solid_places import FacePoints
+from ..bodies.solids.overlays import overlaid
+from ..bodies.solids.places import FacePoints
 from ..checks import ArgumentError, choice, counted, finite, instance
 from ..declared import Each, Number, Position, check_declared
 from ..doubtful import warn_of

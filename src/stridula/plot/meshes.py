@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ..bodies import MeshPart, SolidMesh
-from ..bodies.drawn_surfaces import surface_of_mesh
+from ..bodies.solids.drawn_mesh import surface_of_mesh
 from ..cards import VIEW, eye_of
 from ..checks import ArgumentError, by_key, instance
 from .moved_bodies import AWAY, ShownBody

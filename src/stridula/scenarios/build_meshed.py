@@ -18,7 +18,7 @@ from ..bodies import (
     SolidBody,
     SolidMesh,
 )
-from ..bodies.profile_mesh import BODY
+from ..bodies.revolution.profile_mesh import BODY
 from ..checks import ArgumentError
 from ..disk import named
 from .tables import holds_tables

@@ -10,8 +10,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..bodies import Rayleigh
-from ..bodies.axisymmetric_body import DIRECTIONS
 from ..bodies.damping import DAMPING_LAWS
+from ..bodies.revolution.axisymmetric_body import DIRECTIONS
 from ..checks import ArgumentError
 from ..declared import FREQUENCY, Choice, Number, OneOrEach, Whole, declared, texts
 from ..records.packed import is_packed, unpacked

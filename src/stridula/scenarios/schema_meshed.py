@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal
 
 from .. import bodies
-from ..bodies.profile_mesh import BODY
-from ..bodies.solid_kinds import KINDS
+from ..bodies.revolution.axisymmetric_body import DIRECTIONS
+from ..bodies.revolution.profile_mesh import BODY
+from ..bodies.solids.kinds import KINDS
 from . import fields as is_
 from .derived import Keys, one_of, table_of
 from .schema_drives import History
@@ -35,7 +36,7 @@ else:
 class Held(Table):
     place: PlaceOrBox
     """name of a place, such as inner, top or hat.outer, or a box"""
-    directions: is_.Directions = bodies.axisymmetric_body.DIRECTIONS
+    directions: is_.Directions = DIRECTIONS
     """held directions among r, theta and z; all if left out"""
 
 

@@ -25,8 +25,8 @@ from ..acoustics.surface_pressures import SurfacePressures
 from ..arrays import Array
 from ..bodies import Rectangle, RectangleProfile, SolidMesh
 from ..bodies.body_surfaces import RingSurface
-from ..bodies.ring_surfaces import cut_outline
-from ..bodies.solid_surfaces import cut_faces
+from ..bodies.revolution.ring_surfaces import cut_outline
+from ..bodies.solids.surfaces import cut_faces
 from .case import Case, Curve, Outcome, Row, Sketch
 
 AIR = Air()

@@ -14,7 +14,7 @@ from ..acoustics.ring_sources import RingSources
 from ..acoustics.surface_pressures import SurfacePressures
 from ..arrays import Array
 from ..bodies import Material, SolidBody, SolidMesh
-from ..bodies.solid_kinds import outer_faces
+from ..bodies.solids.kinds import outer_faces
 from .case import Case, Curve, Outcome, Row, Sketch
 from .open_air import AIR, PLACES, RADIUS, meshed_sphere, of_sphere, ring_sphere
 

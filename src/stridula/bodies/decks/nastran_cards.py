@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...disk import is_there, named, opened
-from ..matrix_files.nastran_cards import real
-from ..matrix_files.text import text_of
+from ..reading.nastran_fields import real
+from ..reading.text import text_of
 from .deck import DeckError
 
 SMALL = [(at, at + 8) for at in range(8, 72, 8)]

@@ -6,16 +6,12 @@ the same degrees of freedom.
 
 from .aligned import AlignedMatrices, files_of, read_container, read_matrices
 from .containers import POINT, write_npz
-from .limits import LARGEST_SIZE, LARGEST_SPARSE, check_size
 from .nodes import Nodes, read_nodes
 
 __all__ = [
-    "LARGEST_SIZE",
-    "LARGEST_SPARSE",
     "POINT",
     "AlignedMatrices",
     "Nodes",
-    "check_size",
     "files_of",
     "read_container",
     "read_matrices",

@@ -7,9 +7,9 @@ from collections import Counter
 
 import numpy as np
 
+from ..reading.text import Layout, first_bad, table, text_of
 from .entries import LABEL_BASE, Entries, by_position, filled_in, key_of, labels_of
 from .matrix_market import HEADER
-from .text import Layout, first_bad, table, text_of
 
 LABELLED = Layout(5, "'node, dof, node, dof, value'", "*")
 NUMBERED = Layout(3, "'row column value'", "*")

@@ -12,11 +12,11 @@ from scipy.sparse import issparse
 
 from ...arrays import Array
 from ...checks import ArgumentError
-from ..finite_files import check_finite_in
+from ..limits import LARGEST_SPARSE, check_size
+from ..reading.finite import check_finite_in
 from .entries import Entries, labels_of
 from .formats import PathLike, format_of, whole_file
 from .labels import beside, read_labels
-from .limits import LARGEST_SPARSE, check_size
 
 # Abaqus marks a constrained degree of freedom by 1e36 on the diagonal of the stiffness; no body is as stiff.
 PENALTY = 1e30

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 
+from ..limits import LARGEST_SPARSE, check_size
+from ..reading.text import Layout, first_bad, table, text_of
 from .entries import Entries, both_triangles
-from .limits import LARGEST_SPARSE, check_size
-from .text import Layout, first_bad, table, text_of
 
 ENTRY = Layout(3, "'row column value'", "*")
 

@@ -15,8 +15,8 @@ import scipy.sparse
 
 from ...checks import ArgumentError, at_least, listed
 from ...disk import opened, write
-from . import limits
-from .limits import check_size
+from .. import limits
+from ..limits import check_size
 from .matlab import read_matlab
 
 # Readers of the headers of NumPy's arrays by version; version 3 is only for arrays with named fields.

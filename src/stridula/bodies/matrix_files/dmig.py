@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..reading.nastran_fields import fields_of, real
+from ..reading.text import Lines, text_of
 from .entries import LABEL_BASE, Entries, by_position, check_full, filled_in, labels_of
 from .nastran import Held, chosen
-from .nastran_cards import fields_of, real
-from .text import Lines, text_of
 
 # Forms and types of matrices.
 SQUARE, SYMMETRIC = 1, 6

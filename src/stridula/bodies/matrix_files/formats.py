@@ -11,7 +11,7 @@ from typing import Any
 
 from ...checks import at_least, in_one_line
 from ...disk import check_regular, opened
-from . import limits
+from .. import limits
 from .abaqus import read_abaqus
 from .calculix import read_calculix
 from .containers import read_mat, read_npz

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...arrays import Array
 from ...checks import ArgumentError
+from ..limits import LARGEST_SPARSE, check_size
+from ..reading.text import Lines, text_of
 from .entries import Entries, both_triangles, check_full
-from .limits import LARGEST_SPARSE, check_size
-from .text import Lines, text_of
 
 KIND = re.compile(rb"[RCPrcp][SUHZRsuhzr][AEae]\s+\d+\s+\d+\s+\d+")
 FORM = re.compile(r"\(\s*(?:\d+P\s*,?\s*)?(\d*)\s*[IEDFGiedfg](\d+)(?:\.\d+)?(?:E\d+)?\s*\)")

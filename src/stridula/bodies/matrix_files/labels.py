@@ -11,8 +11,8 @@ import numpy as np
 
 from ...arrays import Array
 from ...checks import listed
-from .limits import LARGEST_SPARSE
-from .text import text_of
+from ..limits import LARGEST_SPARSE
+from ..reading.text import text_of
 
 # Numbers of degrees of freedom, common to all programs, by Ansys' names.
 NAMES = {"UX": 1, "UY": 2, "UZ": 3, "ROTX": 4, "ROTY": 5, "ROTZ": 6, "WARP": 7}

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse
 
 from ...arrays import Array
-from . import limits
+from .. import limits
 
 HEADER = 128
 # Types of elements that hold numbers, and types that hold a variable.

@@ -12,9 +12,9 @@ import scipy.io
 
 from ...arrays import Array
 from ...checks import ArgumentError
+from ..limits import LARGEST_SIZE, LARGEST_SPARSE, check_size
+from ..reading.text import Layout, first_bad, table, text_of
 from .entries import Entries, check_full, with_mirror_images
-from .limits import LARGEST_SIZE, LARGEST_SPARSE, check_size
-from .text import Layout, first_bad, table, text_of
 
 # For files without it.
 HEADER = "the first line must be '%%MatrixMarket matrix coordinate real symmetric' or a similar one"

@@ -10,10 +10,10 @@ import numpy as np
 
 from ...arrays import Array
 from ...checks import ArgumentError, finite
-from ..finite_files import check_finite_in
+from ..reading.finite import check_finite_in
+from ..reading.nastran_fields import fields_of, real
+from ..reading.text import Lines, text_of
 from .formats import PathLike, format_of, whole_file
-from .nastran_cards import fields_of, real
-from .text import Lines, text_of
 
 # Largest distance of a place from a node, relative to the size of the mesh.
 TOLERANCE = 1e-3

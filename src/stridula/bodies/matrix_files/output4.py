@@ -16,10 +16,10 @@ import numpy as np
 from ...arrays import Array
 from ...checks import ArgumentError
 from ...disk import opened
+from ..limits import LARGEST_SPARSE, check_size
+from ..reading.text import Lines, text_of
 from .entries import Entries, check_full, filled_in
-from .limits import LARGEST_SPARSE, check_size
 from .nastran import Held, chosen
-from .text import Lines, text_of
 
 SYMMETRIC = 6
 # Words of four bytes per number by type: real and complex, in single and double precision.

@@ -1,0 +1,1 @@
+"""Beams, strings and plates."""

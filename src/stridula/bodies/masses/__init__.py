@@ -1,0 +1,1 @@
+"""Masses without elasticity: points and rigid bodies."""

@@ -1,0 +1,1 @@
+"""Bodies given by matrices or by modes, from other programs and measurements."""

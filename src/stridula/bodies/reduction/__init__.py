@@ -1,0 +1,1 @@
+"""Reduction of matrices to modes, dense or sparse."""

@@ -1,0 +1,1 @@
+"""Bodies of revolution: discs, wheels, bells and glasses."""

@@ -1,0 +1,1 @@
+"""Bodies meshed in space."""

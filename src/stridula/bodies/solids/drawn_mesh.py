@@ -1,0 +1,32 @@
+"""The outer surface of a mesh for drawing."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...arrays import Array
+from ..drawn_surfaces import DrawnSurface
+from .kinds import outer_faces
+from .solid_mesh import SolidMesh
+
+
+def surface_of_mesh(mesh: SolidMesh, shapes: Array) -> DrawnSurface:
+    """Return the faces that belong to one element only, with the middles of their edges.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+        The mesh.
+    shapes : ndarray, shape (3 nodes, modes)
+        Shapes of the modes at its nodes.
+    """
+    kind = mesh.element_kind
+    corners = len(kind.faces[0])
+    element, side = outer_faces(kind, mesh.elements).T
+    outer = mesh.elements[element[:, None], kind.face_nodes[side]]
+    if kind.middles:
+        # Round the face: corner, middle of the next edge, corner.
+        outer = np.stack([outer[:, :corners], outer[:, corners : 2 * corners]], axis=2).reshape(len(outer), -1)
+    used, polygons = np.unique(outer, return_inverse=True)
+    moved = shapes.reshape(len(mesh.nodes), 3, -1)[used]
+    return DrawnSurface(mesh.nodes[used], polygons.reshape(outer.shape), moved)
