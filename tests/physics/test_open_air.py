@@ -27,7 +27,6 @@ from stridula.bodies.revolution import ring_surfaces
 from stridula.bodies.solids import surfaces
 from stridula.bodies.solids.cut_elements import cut_into_tetrahedra
 from stridula.bodies.solids.surfaces import cut_faces
-from stridula.lowering import assemble
 from stridula.verification import open_air
 from stridula.verification.systems.discs import HERE, disc, struck
 
@@ -78,11 +77,10 @@ def seen(system, body, place, direction, duration=0.04):
     """Acceleration of a point in the march, and from its modes driven again."""
     probe = st.Acceleration(body.at(place), direction)
     run = st.simulate(system, duration, step=2e-6, sample_rate=1e5, probes=[probe])
-    moved = redriven(run, system)
-    first, end = assemble(system).spans[system.body_name(body)]
+    moved = redriven(run, system).of(system.body_name(body))
     row = body.trace(place)["xyz".index(direction)]
     row = np.where(body.modes().massless, 0.0, row)
-    again = row @ moved.accelerations[first:end]
+    again = row @ moved.accelerations(np.arange(row.size))
     times = moved.first + moved.interval * np.arange(again.size)
     # The probe is low-passed and stands at the ends of the intervals.
     return run.acceleration.values.ravel(), np.interp(run.time.values, times, again)

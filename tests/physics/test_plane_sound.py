@@ -158,9 +158,9 @@ def test_the_slider_moves_again_as_it_did_in_the_march(joined, most):
     probe = run.acceleration.values[:, 0]
 
     def error(record):
-        moved = redriven(record, system, [SLIDER])
-        own = moved.accelerations[slice(*moved.spans["slider"])]
-        times = moved.first + moved.interval * np.arange(own.shape[1])
+        slider = redriven(record, system, [SLIDER]).of("slider")
+        own = slider.accelerations(np.arange(SLIDER.modes(system.is_held(SLIDER)).count))
+        times = slider.first + slider.interval * np.arange(own.shape[1])
         found = np.interp(run.time.values, times, SLIDER.trace(0.17)[0] @ own)
         spectra = [np.fft.rfft(values * np.hanning(values.size)) for values in (found, probe)]
         one, other = (part[np.fft.rfftfreq(probe.size, step) < 10e3] for part in spectra)
@@ -301,7 +301,7 @@ def test_two_ears_above_the_track_by_default_and_above_the_rod_without_one():
 def test_beams_that_nothing_pushes_are_silent():
     quiet = st.radiate(record(0.0, 0.0), on_the_ground(ROD), PLACE)
     assert not quiet.values.any()
-    assert "silence: nothing pushes the beams" in quiet.attrs["notes"]
+    assert "rod is silent: nothing pushes" in quiet.attrs["notes"]
 
 
 def test_bodies_without_a_surface_are_reported():
@@ -309,7 +309,7 @@ def test_bodies_without_a_surface_are_reported():
     system = st.System([st.PointContact(mass.centre, TRACK, at=0.1)])
     found = st.radiate(record(pulse(), 0.0, 0.1), system, PLACE)
     assert found.attrs["bodies"] == ["track"]
-    assert "not included: bob" in found.attrs["notes"]
+    assert "not included, without a surface: bob" in found.attrs["notes"]
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,6 @@ negative controls are here.
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from fractions import Fraction
 from math import pi, sqrt
@@ -17,6 +16,7 @@ import xarray as xr
 from scipy.special import erf, h2vp, hankel2
 
 import stridula as st
+from stridula.acoustics import bodies_sound
 from stridula.acoustics.delays import Sampling
 from stridula.acoustics.dipoles import dipole_response, moved_area
 from stridula.acoustics.driven import LEAD, accelerations, first_time, steady, undo_mean
@@ -249,7 +249,7 @@ def test_contacts_add_and_doubled_forces_double():
 
 def test_modes_in_parts_sound_as_at_once(monkeypatch):
     whole = st.radiate(record(800), BEAM, (0.2, 0.1, 0.5)).values
-    monkeypatch.setattr(sys.modules["stridula.acoustics.track_sound"], "MEMORY", 8 * 3 * 800 * 2)
+    monkeypatch.setattr(bodies_sound, "MEMORY", 8 * 3 * 800 * 2)
     parts = st.radiate(record(800), BEAM, (0.2, 0.1, 0.5)).values
     np.testing.assert_allclose(parts, whole, atol=1e-12 * np.abs(whole).max())
 

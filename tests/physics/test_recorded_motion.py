@@ -171,7 +171,7 @@ def test_only_a_track_of_the_same_modes_is_heard_so(squeal):
     assert st.radiate(run, other, PLACE).attrs["motion"] == "driven again"
     # The recorded motion of one of two bodies is not enough.
     less = run.isel({f"{VARIABLE}_probe": run.modal_motion_body.values == "track"})
-    assert recorded_motion(less, system, [system.slider]) is None
+    assert recorded_motion(less, system.slider, "slider", system.is_held(system.slider)) is None
     assert st.radiate(less, system, PLACE).attrs["motion"] == "recorded or driven again"
 
 
@@ -179,12 +179,12 @@ def test_only_a_track_of_the_same_modes_is_heard_so(squeal):
 def test_a_disc_moves_as_its_forces_imply_turning_or_not(turning):
     system, plate = struck(turning)
     run = st.simulate(system, 0.03, step=1.0 / 480e3, sample_rate=48e3, probes=motions(plate))
-    found, known = recorded_motion(run, system, [plate]), redriven(run, system)
-    first, last = known.spans[system.body_name(plate)]
+    name, modes = system.body_name(plate), np.arange(plate.modes().count)
+    found, known = recorded_motion(run, plate, name), redriven(run, system).of(name)
     bands = (500.0, 800.0, 1600.0, 2500.0)
     # At the same times, to half a sample.
     ahead = round((found.first - known.first) / found.interval)
-    rows = found.accelerations, known.accelerations[first:last, ahead : ahead + found.samples]
+    rows = found.accelerations(modes), known.accelerations(modes)[:, ahead : ahead + found.samples]
     direction = np.where(plate.modes().massless, 0.0, plate.trace((0.1, 2.0, 0.01))[2])
     heard, again = (levels(direction @ row, found.interval, bands) for row in rows)
     np.testing.assert_allclose(heard, again, atol=0.1)

@@ -16,13 +16,16 @@ from ..declared import check_declared
 from ..records.checked import record
 from ..records.probes import DIRECTION
 from .air import Air
-from .driven import FASTEST, LEAD, DrivenModes, Modes, respond
-from .free_bodies import bodies_sound, ends_of
+from .bodies_sound import Listening, bodies_sound, joined
+from .driven import FASTEST, LEAD, Modes, pressed_motion, respond
+from .free_bodies import ears_above
+from .listeners import listeners_of
+from .lone_tracks import panel_sound
+from .motions import Motion
 from .open_surfaces import open_surface
 from .panels import Panel
 from .recorded import Pressing, sampled
-from .redriven import Moved
-from .track_sound import panel_sound
+from .system_sound import ends_of
 
 FORCE = "support_force"
 # Component along the normal below which a force leaves a track silent.
@@ -88,7 +91,6 @@ def bridged_sound(
                 baffled is not False,
                 air,
                 sample_rate,
-                ("silence", "nothing pushes"),
             )
         except ArgumentError as error:
             raise error.renamed("point" if error.argument == "track" else error.argument) from None
@@ -99,16 +101,14 @@ def bridged_sound(
     # Any direction perpendicular to the force.
     aside = np.cross(bridge.along, np.eye(3)[int(np.abs(bridge.along).argmin())])
     name = getattr(body, "name", "") or type(body).__name__
-    pressure, time, places, attributes, motions = bodies_sound(
-        lambda: {name: _moved(bridge, name, start, interval, force)},
-        [open_surface(name, body.surface(), body.modes(), np.zeros(3))],
-        (bridge.along, aside / np.linalg.norm(aside)),
-        listener,
-        air,
-        sample_rate,
+    heard = [open_surface(name, body.surface(), body.modes(), np.zeros(3))]
+    ears = ears_above(bridge.along, aside / np.linalg.norm(aside), heard) if listener is None else listener
+    listeners = listeners_of(ears)
+    pressure, time, attributes = bodies_sound(
+        heard, lambda: [_moved(bridge, start, interval, force)], Listening(listeners, air, None, sample_rate)
     )
-    notes = [attributes["notes"], *ends_of({name: body.modes()}, motions[name])]
-    return pressure, time, places, attributes | {"notes": "; ".join(filter(None, notes))}
+    notes = [attributes["notes"], ends_of({name: body.modes()})]
+    return pressure, time, listeners, attributes | {"notes": joined(notes)}
 
 
 def _force(run: xr.Dataset, probe: str | None) -> tuple[float, float, Array]:
@@ -132,7 +132,7 @@ def _force(run: xr.Dataset, probe: str | None) -> tuple[float, float, Array]:
     return start, interval, force
 
 
-def _pressed(bridge: Bridge, panel: Panel, start: float, interval: float, force: Array) -> DrivenModes:
+def _pressed(bridge: Bridge, panel: Panel, start: float, interval: float, force: Array) -> Motion:
     """Return the motion of a track under the force, taken as a normal force."""
     body = bridge.point.body
     across = float(in_space(body.axes[1]) @ bridge.along)
@@ -143,22 +143,27 @@ def _pressed(bridge: Bridge, panel: Panel, start: float, interval: float, force:
     at = replace(panel, place=lambda abscissa: (np.full_like(abscissa, x), np.full_like(abscissa, y)))
     # Samples stand at the ends of intervals; each counts as a single impulse in its interval.
     still = np.zeros((1, force.size))
-    return DrivenModes(at, Pressing(start, interval, 1, -across * force[None], still, interval))
+    return pressed_motion(at, Pressing(start, interval, 1, -across * force[None], still, interval), "nothing pushes")
 
 
-def _moved(bridge: Bridge, name: str, start: float, interval: float, force: Array) -> Moved:
+def _moved(bridge: Bridge, start: float, interval: float, force: Array) -> Motion:
     """Return the motion of a body in space under the force."""
     body = bridge.point.body
     modes = body.modes()
     row = bridge.along @ body.trace(bridge.point.position)
     signal = np.concatenate([np.zeros(LEAD), force, np.full(LEAD, force[-1])])
-    found = np.zeros((modes.count, signal.size))
-    left_out = ~modes.massless & (modes.angular_frequency * interval >= FASTEST)
-    kept = ~modes.massless & ~left_out
-    oscillators = Modes(modes.angular_frequency[kept], modes.damping_rate[kept])
-    found[kept] = respond(oscillators, row[kept, None] * signal, interval)
+
+    def accelerations(numbers: Array) -> Array:
+        oscillators = Modes(modes.angular_frequency[numbers], modes.damping_rate[numbers])
+        return respond(oscillators, row[numbers, None] * signal, interval)
+
     pushes = np.flatnonzero(force)
-    pushed = float(pushes[0]) * interval if pushes.size else None
-    return Moved(
-        start, interval, force.size, start + (1 - LEAD) * interval, found, left_out, pushed, {name: (0, modes.count)}
+    return Motion(
+        start,
+        interval,
+        force.size,
+        start + (1 - LEAD) * interval,
+        float(pushes[0]) * interval if pushes.size else None,
+        np.flatnonzero(modes.angular_frequency * interval < FASTEST),
+        accelerations,
     )

@@ -2,36 +2,34 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
 from ..system import System
-from .air import Air
-from .convolution import Convolution
-from .delays import Sampling
-from .dipoles import dipole_response, moved_area
 from .driven import LEAD, steady
-from .redriven import Moved
+from .motions import Motion
 from .slim_beams import SlimBeam
 
 # Number of steps in an interval with which a mean of steps is one over time.
 MANY = 1_000_000
+# Number of the only mode of a beam that moves as a whole.
+WHOLE = np.zeros(1, dtype=int)
 
 
-class Rigid:
-    """A beam as a line of dipoles that moves as a whole along world x, for `dipole_response`."""
-
-    width = edge = 0.0
-    wavenumbers = np.zeros((1, 2))
-
-    def __init__(self, beam: SlimBeam) -> None:
-        self.length, self.across = beam.length, float(beam.body.axes[1][0])
+class _Carried(SlimBeam):
+    """A beam as a line of dipoles that moves as a whole along world x."""
 
     def shapes(self, x: Array, y: Array) -> Array:
         """Return the part across the beam of a unit motion along x, shape (places, 1)."""
-        return np.full((x.size, 1), self.across)
+        return np.full((x.size, 1), float(self.body.axes[1][0]))
+
+
+def carried(beam: SlimBeam) -> SlimBeam:
+    """Return a beam as it moves as a whole."""
+    return _Carried(beam.name, beam.body, True, WHOLE, np.zeros((1, 2)), beam.frame, beam.origin)
 
 
 def is_carried(system: System, body: Any) -> bool:
@@ -40,35 +38,22 @@ def is_carried(system: System, body: Any) -> bool:
     return imposed is not None and imposed.point.body == body and imposed.history.settled != 0.0
 
 
-def carried_sound(beam: SlimBeam, system: System, places: Array, air: Air, moved: Moved, bandwidth: float) -> Array:
-    """Return the pressure of the motion of the root of a beam, as a line of dipoles, shape (listeners, samples).
+def carried_motion(system: System, moved: Motion) -> Motion:
+    """Return the motion of the root of a beam, relative to which its modes move.
 
-    The modes move relative to the root, on which they are driven by the inertia of the beam. Before the record the
-    velocity is constant.
+    They are driven by the inertia of the beam. Before the record the velocity is constant.
 
     Parameters
     ----------
-    beam : SlimBeam
-        The beam, carried.
     system : System
         Its system.
-    places : ndarray, shape (listeners, 3)
-        Listeners [m].
-    air : Air
-        The air.
-    moved : Moved
-        Motion of its modes, with which the sound has its samples in common.
-    bandwidth : float
-        Frequency up to which the sound is complete [Hz].
+    moved : Motion
+        Motion of its modes, with which this has its samples in common.
     """
     imposed: Any = system.imposed_velocity
     edges = moved.start + moved.interval * np.arange(moved.samples + 1)
     means = imposed.velocity * np.diff(imposed.history.factor(edges)) / moved.interval
+    accelerations = steady(means[None], MANY + 1)
     # Means over intervals count at their middles.
-    sampling = Sampling(moved.interval, bandwidth, 0.5 - LEAD)
-    line: Any = Rigid(beam)
-    area = moved_area(beam.body.section)
-    responses = [dipole_response(line, area, one, air, sampling) for one in beam.beside(places)]
-    sound = Convolution(responses, moved.samples + 2 * LEAD)
-    sound.add(steady(means[None], MANY + 1), slice(None))
-    return sound.signals()[:, : moved.samples]
+    first = moved.start + (0.5 - LEAD) * moved.interval
+    return replace(moved, first=first, begins=0.0, carried=WHOLE, accelerations=lambda modes: accelerations[modes])

@@ -21,12 +21,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import scipy  # its parts are imported on first use
 
 from ..arrays import Array
+from .motions import CONTINUES, Motion
 from .panels import Panel
 from .recorded import Pressing
 
@@ -106,8 +107,8 @@ def modal_forces(panel: Panel, pressing: Pressing) -> Array:
     return found
 
 
-class DrivenModes:
-    """Modes of a track driven again by recorded forces, at rest before them.
+def pressed_motion(panel: Panel, pressing: Pressing, still: str = "the contact never presses") -> Motion:
+    """Return the motion of the modes of a track under recorded forces, at rest before them.
 
     Parameters
     ----------
@@ -115,39 +116,21 @@ class DrivenModes:
         The modes of the track.
     pressing : Pressing
         The forces.
-
-    Attributes
-    ----------
-    start, interval : float
-        Time at which the record begins, and its sample interval [s].
-    samples : int
-        Number of its samples.
-    first : float
-        Time of the first acceleration [s].
-    begins : float or None
-        Begin of the sample interval in which a force first acts [s from the start], None if none does.
-    notes : list of str
-        Notes on missing parts.
+    still : str, optional
+        Cause of silence without a force.
     """
-
-    words = "driven again"
-
-    def __init__(self, panel: Panel, pressing: Pressing) -> None:
-        self._panel, self._pressing = panel, pressing
-        self.start, self.interval, self.samples = pressing.start, pressing.interval, pressing.samples
-        self.first = first_time(pressing)
-        presses = np.flatnonzero(pressing.force.any(axis=0))
-        self.begins = float(presses[0]) * pressing.interval if presses.size else None
-        continues = "the record continues another one; vibration left from the earlier record is not included"
-        self.notes = [continues] if pressing.start > 0.5 * pressing.interval else []
-
-    def carried(self, angular_frequency: Array) -> Array:
-        """Return the numbers of the modes that the sample rate can represent."""
-        return np.flatnonzero(angular_frequency * self.interval < FASTEST)
-
-    def accelerations(self, modes: Any) -> Array:
-        """Return the accelerations of modes, by their numbers, shape (modes, samples + 2 LEAD) [m kg^(1/2) / s²]."""
-        return accelerations(self._panel.only(modes), self._pressing)
+    presses = np.flatnonzero(pressing.force.any(axis=0))
+    return Motion(
+        pressing.start,
+        pressing.interval,
+        pressing.samples,
+        first_time(pressing),
+        float(presses[0]) * pressing.interval if presses.size else None,
+        np.flatnonzero(panel.angular_frequency * pressing.interval < FASTEST),
+        lambda modes: accelerations(panel.only(modes), pressing),
+        still=still,
+        notes=[CONTINUES] if pressing.start > 0.5 * pressing.interval else [],
+    )
 
 
 class Oscillators(Protocol):

@@ -11,7 +11,7 @@ import xarray as xr
 
 from ..arrays import Array
 from ..bodies.paths import Path, Waves
-from ..checks import ArgumentError
+from ..checks import ArgumentError, listed
 from ..lowering import Assembly, assemble
 from ..records.by_point import by_point
 from ..records.changes import check_one_system
@@ -229,6 +229,14 @@ def _of_drives(flat: Assembly, start: float, interval: float, steps: int, sample
 def starts_are_heard(flat: Assembly) -> bool:
     """Return whether vibration at the start of a run is included: of bodies that do not turn."""
     return not flat.turning
+
+
+def start_notes(system: System) -> list[str]:
+    """Return a note on drives whose vibration at the start is left out."""
+    heard = starts_are_heard(assemble(system))
+    moved = [one for one in system.drives if one.starts_motion]
+    left_out = [str(one) for one in moved if not heard or (one.uniform_velocity is None and not one.vectors)]
+    return [f"vibration at the start is not included: {listed(left_out)}"] if left_out else []
 
 
 def _of_start(flat: Assembly, interval: float, steps: int, samples: int) -> tuple[Array, Array]:

@@ -1,37 +1,31 @@
-"""The sound of the bodies of a system in space, in open air."""
+"""The sound of the bodies of a system in space, in open air or in front of a baffle."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from ..arrays import Array, in_space
-from ..bodies import Modes, is_track
-from ..checks import ArgumentError, listed
-from ..lowering import assemble
+from ..checks import ArgumentError
 from ..places import origins_in_space
+from ..records.changes import check_one_system
 from ..records.checked import record
 from ..system import System
 from .air import Air
-from .carried import carried_sound, is_carried
-from .convolution import Convolution
-from .delays import Response, Sampling
-from .driving import starts_are_heard
+from .bodies_sound import Listening, bodies_sound, joined
+from .carried import carried, carried_motion, is_carried
 from .listeners import HEIGHT, SPACING, listeners_of
-from .moments import moment_note
-from .open_surfaces import Heard
-from .panels import is_flat, line_of, panel_of
-from .recorded import along_track
+from .motions import Motion
+from .panels import is_flat
 from .recorded_motion import at_one_rate, recorded_motion
-from .redriven import Moved, redriven
-from .resampling import bandwidth_of, ratio_of, resample
-from .slim_beams import SlimBeam
-from .sounding import Sounding, Wall, line_in_space, sounding_of, wall_of
-from .travels import travel_note, travel_of
+from .redriven import redriven
+from .sounding import Sounding, line_in_space, sounding_of, wall_of
+from .system_sound import chosen, system_sound
+from .travels import travel_of
 
 
 def bodies_heard(system: System) -> list[Any]:
@@ -60,65 +54,27 @@ def free_sound(
     if baffled and not any(map(is_flat, heard)):
         words = "be False, or left out, for bodies in space without a plate or a beam of rectangular section"
         raise ArgumentError("baffled", words, baffled)
-    normal, tangent = map(in_space, system.contacts[0].frame[:2])
+    run = at_one_rate(record("run", run), system, heard)
     # Bodies that touch nothing have the origin of the world.
     origins = dict.fromkeys(heard, np.zeros(3)) | origins_in_space(system)
-    run, sounding, slid = at_one_rate(record("run", run), system, heard), [], []
+    sources = {}
     for body in heard:
-        name, (travel, reach) = system.body_name(body), travel_of(run, system, body)
-        sounding.append(
-            sounding_of(name, body, system.is_held(body), origins[body] + travel, baffled=bool(baffled), air=air)
-        )
-        slid += travel_note(name, reach)
-    pressure, time, places, attributes, motions = bodies_sound(
-        lambda: _motions(run, system, heard),
-        sounding,
-        (normal, tangent),
-        listener,
-        air,
-        sample_rate,
-        lambda name, sent, heard: _unheard(run, system, name, sent, heard),
-    )
-    for body, one in zip(heard, sounding, strict=True):
-        if is_carried(system, body):
-            line = line_in_space(body, True, origins[body] + travel_of(run, system, body)[0])
-            carried = _carried(line, system, places, wall_of(sounding), air, motions[one.name], sample_rate)
-            if one.is_line:
-                pressure += carried
-            else:
-                slid.append(_rigid_note(one.name, carried[0], pressure[0]))
-    notes = [attributes["notes"], *slid, *lacks(system, heard, silent, motions.values())]
-    return pressure, time, places, attributes | {"notes": "; ".join(filter(None, notes))}
-
-
-def _unheard(run: xr.Dataset, system: System, name: str, sent: Heard, pressure: Array) -> list[str]:
-    """Return notes on the moments of friction on a body, from its modes that sound and the sound at a listener."""
-    body = next(body for body in system.bodies if system.body_name(body) == name)
-    if not is_track(body) or not sent.numbers.size or all(one.path_body != body for one in system.contacts):
-        return []
-    track: Any = body
-    panel = panel_of(track) if hasattr(track, "track_line") else line_of(track)
-    bending = np.flatnonzero(sent.numbers < len(panel.wavenumbers))
-    first = replace(sent.responses[0], taps=sent.responses[0].taps[:, bending])
-    notes = moment_note(along_track(run, system, body), body, panel.only(sent.numbers[bending]), first, pressure)
-    return [f"{name}: {note}" for note in notes]
-
-
-def _carried(
-    line: SlimBeam,
-    system: System,
-    places: Array,
-    wall: Wall | None,
-    air: Air,
-    moved: Moved,
-    sample_rate: float | None,
-) -> Array:
-    """Return the sound of a beam that moves with its root, as a line, and that of its image."""
-    recorded = 1.0 / moved.interval
-    ratio = ratio_of(sample_rate, recorded, moved.samples)
-    images = [places] if wall is None else [places, wall.images(places)]
-    sounds = [carried_sound(line, system, one, air, moved, bandwidth_of(ratio, recorded)) for one in images]
-    return resample(np.sum(sounds, axis=0), ratio)
+        origins[body] = origins[body] + travel_of(run, system, body)[0]
+        name, held = system.body_name(body), system.is_held(body)
+        sources[body] = sounding_of(name, body, held, origins[body], baffled=bool(baffled), air=air)
+    wall = wall_of(list(sources.values()))
+    normal, tangent = map(in_space, system.contacts[0].frame[:2])
+    places = listeners_of(ears_above(normal, tangent, list(sources.values())) if listener is None else listener)
+    listening = Listening(places, air, wall, sample_rate)
+    moved = cache(lambda: _motions(run, system, heard))
+    pressure, time, attributes = system_sound(run, system, sources, moved, listening, silent)
+    for body, one in sources.items():
+        if is_carried(system, body) and not one.is_line:
+            whole = carried(line_in_space(one.name, body, True, origins[body]))
+            motion = carried_motion(system, moved()[body])
+            alone, *_ = bodies_sound([whole], lambda motion=motion: [motion], listening)  # type: ignore[misc]
+            attributes["notes"] = joined([attributes["notes"], _rigid_note(one.name, alone[0], pressure[0])])
+    return pressure, time, places, attributes
 
 
 def _rigid_note(name: str, carried: Array, heard: Array) -> str:
@@ -128,155 +84,20 @@ def _rigid_note(name: str, carried: Array, heard: Array) -> str:
     return f"{name}: changes of its imposed velocity are heard by its vibration alone, not as a whole: about {words}"
 
 
-def _motions(run: xr.Dataset, system: System, bodies: Sequence[Any]) -> dict[str, Moved]:
-    """Return how bodies move, by their names: as recorded where it is, else driven again."""
-    found = {system.body_name(body): recorded_motion(run, system, [body]) for body in bodies}
-    again = redriven(run, system) if None in found.values() else None
-    motions = {name: again if one is None else one for name, one in found.items()}
-    return {name: one for name, one in motions.items() if one is not None}
+def _motions(run: xr.Dataset, system: System, bodies: Sequence[Any]) -> dict[Any, Motion]:
+    """Return how bodies move: as recorded where it is, else driven again."""
+    check_one_system(run)
+    names = {body: system.body_name(body) for body in bodies}
+    found = {body: recorded_motion(run, body, name, system.is_held(body)) for body, name in names.items()}
+    if None not in found.values():
+        return {body: one for body, one in found.items() if one is not None}
+    again = redriven(run, system)
+    return {body: one or again.of(names[body]) for body, one in found.items()}
 
 
-def bodies_sound(
-    motion: Callable[[], dict[str, Moved]],
-    heard: Sequence[Sounding],
-    above: tuple[Array, Array],
-    listener: Any,
-    air: Air,
-    sample_rate: float | None,
-    unheard: Callable[[str, Heard, Array], list[str]] | None = None,
-) -> tuple[Array, Array, Array, dict[str, Any], dict[str, Moved]]:
-    """Return pressures (listeners, samples), their times, the listeners, attributes and the motion of each body.
-
-    All motions have the samples of one record. If `listener` is None, two ears are taken: above the middle of the
-    bodies along the first direction of `above`, side by side along the second one. Bodies in front of a baffle are
-    heard by the listeners and by their images in it. `unheard` takes the name of a body, its responses and the sound at
-    the first listener; it returns notes on missing parts.
-
-    Raises
-    ------
-    ValueError
-        If a listener is in a body or behind the baffle, or there is no such motion.
-    """
-    wall = wall_of(heard)
-    places = listeners_of(_ears(above, heard) if listener is None else listener)
-    distances = np.array([one.distances(places) for one in heard])
-    motions = motion()
-    moved = motions[heard[0].name]
-    recorded = 1.0 / moved.interval
-    ratio = ratio_of(sample_rate, recorded, moved.samples)
-    bandwidth = min(bandwidth_of(ratio, recorded), *(one.most for one in heard))
-    pressure, modes = np.zeros((len(places), moved.samples)), 0
-    notes: list[str] = []
-    errors: list[float] = []
-    every = {}
-    for one in heard:
-        moved = motions[one.name]
-        first, last = moved.spans[one.name]
-        shift = (moved.first - moved.start) / moved.interval
-        moving = np.flatnonzero(moved.accelerations[first:last].any(axis=1))
-        seen = places if wall is None or one.wall is not None else np.concatenate([places, wall.images(places)])
-        sent = one.heard(moving, seen, air, Sampling(moved.interval, bandwidth, shift))
-        if sent.numbers.size:
-            signals = convolved(sent.responses, moved, first + sent.numbers)
-            pressure += signals.reshape(-1, *pressure.shape).sum(axis=0)
-        every[one.name] = sent
-        notes += sent.notes
-        errors.append(sent.error)
-        modes += int(sent.numbers.size)
-    if unheard is not None and pressure[0].any():
-        notes += [note for name, sent in every.items() for note in unheard(name, sent, pressure[0])]
-    sounding = resample(pressure, ratio)
-    times = np.arange(sounding.shape[1]) * moved.interval / float(ratio)
-    arrival = distances.min(axis=0) / air.speed
-    sounding[times < arrival[:, None]] = 0.0
-    pushed = [one.pushed for one in motions.values() if one.pushed is not None]
-    if not pushed:
-        notes.append("silence: nothing pushes")
-    elif (arrival + min(pushed) > times[-1]).any():
-        notes.append("silence: the sound does not arrive within the record")
-    attributes = {
-        "bandwidth": bandwidth,
-        "modes": modes,
-        "baffled": int(wall is not None),
-        "distance": distances.min(axis=0).tolist(),
-        "bodies": [one.name for one in heard],
-        "fit_error": errors,
-        "motion": " or ".join(dict.fromkeys(one.words for one in motions.values())),
-        **air.attributes,
-        "notes": "; ".join(notes),
-    }
-    return sounding, moved.start + times, places, attributes, motions
-
-
-def chosen(system: System, bodies: Sequence[Any] | None, heard: list[Any]) -> tuple[list[Any], list[str]]:
-    """Return the audible bodies that are wanted and, if all are wanted, the names of the silent ones.
-
-    Raises
-    ------
-    ValueError
-        If there are none, or a selected one has no surface.
-    """
-    silent = [system.body_name(body) for body in system.bodies if body not in heard]
-    if bodies is None:
-        if not heard:
-            raise ArgumentError(
-                "system", "have a body with a surface, which radiates sound", got=f"none of {listed(silent)}"
-            )
-        return heard, silent
-    if isinstance(bodies, str) or not isinstance(bodies, Sequence) or not bodies:
-        raise ArgumentError("bodies", "be one or more bodies of the system", bodies)
-    for number, body in enumerate(bodies):
-        if body not in heard:
-            names = [system.body_name(one) for one in heard]
-            raise ArgumentError(f"bodies[{number}]", f"be a body of the system with a surface: {listed(names)}", body)
-    return list(dict.fromkeys(bodies)), []
-
-
-def _ears(above: tuple[Array, Array], heard: Sequence[Sounding]) -> list[list[float]]:
+def ears_above(normal: Array, tangent: Array, heard: Sequence[Sounding]) -> list[list[float]]:
     """Return two ears above the middle of the bodies, along a normal and side by side along a tangent."""
-    normal, tangent = above
     points = np.concatenate([one.points for one in heard])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     up = middle + (float((points @ normal).max()) + HEIGHT - float(middle @ normal)) * normal
     return [(up + side * SPACING / 2.0 * tangent).tolist() for side in (-1.0, 1.0)]
-
-
-def convolved(responses: Sequence[Response], moved: Moved, modes: Array) -> Array:
-    """Return the pressures at the samples of the record, shape (listeners, samples)."""
-    acceleration = moved.accelerations[modes]
-    sound = Convolution(responses, acceleration.shape[1])
-    sound.add(acceleration, slice(None))
-    return sound.signals()[:, : moved.samples]
-
-
-def ends_of(heard: dict[str, Modes], moved: Moved | None) -> list[str]:
-    """Return notes on the highest modes of bodies by name."""
-    notes = []
-    if moved is not None and moved.left_out.any():
-        left_out = int(moved.left_out.sum())
-        notes.append(f"{left_out} modes above the limit of the record's sample rate are left out")
-    highest = {name: float(modes.frequency[~modes.massless].max()) for name, modes in heard.items()}
-    words = [f"{name} {frequency:.4g} Hz" for name, frequency in highest.items()]
-    return [*notes, f"modes end at: {', '.join(words)}"]
-
-
-def lacks(system: System, heard: Sequence[Any], silent: Sequence[str], motions: Iterable[Moved]) -> list[str]:
-    """Return notes on parts that are left out."""
-    notes = []
-    if silent:
-        notes.append(f"not included, without a surface: {listed(silent)}")
-    moved = next((one for one in motions if not one.is_recorded), None)
-    notes += ends_of({system.body_name(body): body.modes(system.is_held(body)) for body in heard}, moved)
-    if moved is None:
-        return notes
-    if moved.start > 0.5 * moved.interval:
-        notes.append("the record continues another one; vibration left from the earlier record is not included")
-    return [*notes, *start_notes(system)]
-
-
-def start_notes(system: System) -> list[str]:
-    """Return a note on drives whose vibration at the start is left out."""
-    heard = starts_are_heard(assemble(system))
-    moved = [one for one in system.drives if one.starts_motion]
-    left_out = [str(one) for one in moved if not heard or (one.uniform_velocity is None and not one.vectors)]
-    return [f"vibration at the start is not included: {listed(left_out)}"] if left_out else []

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,11 +12,21 @@ import xarray as xr
 from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate
 from ..checks import listed
+from ..records.changes import check_one_track
 from ..records.checked import record
 from ..records.on_tracks import OnTrack, on_track
 from .air import Air
-from .recorded_motion import RecordedModes
-from .track_sound import track_sound
+from .bodies_sound import Listening, bodies_sound
+from .driven import pressed_motion
+from .listeners import check_in_front, ears, listeners_of
+from .moments import moment_note
+from .motions import Motion
+from .open_surfaces import Heard
+from .panels import Panel
+from .recorded import pressing
+from .recorded_motion import RECORDED, recorded_motion
+from .responses import way_of
+from .sounding import Flat
 
 UNKNOWN = "the record does not say whether more than contacts acts on the track: its system includes all"
 
@@ -32,10 +44,43 @@ def lone_sound(
     run = record("run", run)
     acting = on_track(run, getattr(track, "name", ""))
     heard = run if acting is None else _along(run, acting)
-    pressure, time, listeners, attributes = track_sound(heard, track, listener, baffled, air, sample_rate)
-    if attributes["motion"] != RecordedModes.words:
-        notes = _notes(heard, acting)
-        attributes["notes"] = "; ".join(filter(None, [attributes["notes"], *notes]))
+
+    def moved(panel: Panel) -> Motion:
+        motion = recorded_motion(heard, track) or pressed_motion(panel, pressing(heard, panel))
+        check_one_track(heard)
+        return motion if motion.words == RECORDED else replace(motion, notes=[*motion.notes, *_notes(heard, acting)])
+
+    def unheard(panel: Panel, responses: Heard, pressure: Array) -> list[str]:
+        return moment_note(heard, track, panel.only(responses.numbers), responses.responses[0], pressure)
+
+    return panel_sound(moved, track, listener, baffled, air, sample_rate, unheard)
+
+
+def panel_sound(
+    moved: Callable[[Panel], Motion],
+    track: Any,
+    listener: Any,
+    baffled: bool,
+    air: Air,
+    sample_rate: float | None,
+    unheard: Callable[[Panel, Heard, Array], list[str]] = lambda *_: [],
+) -> tuple[Array, Array, Array, dict[str, Any]]:
+    """Return the sound of a track in its own axes.
+
+    `moved` takes its panel and returns its motion; `unheard` takes the panel, the modes heard and the sound at the
+    first listener, and returns notes. Other arguments, results and errors are those of `lone_sound`.
+    """
+    way = way_of(track, baffled)
+    listeners = listeners_of(ears(track) if listener is None else listener)
+    if baffled:
+        check_in_front(listeners)
+    flat = Flat("", way, np.eye(3), np.zeros(3))
+    pressure, time, attributes = bodies_sound(
+        [flat],
+        lambda: [moved(way.panel)],
+        Listening(listeners, air, flat.wall, sample_rate),
+        lambda _, heard, first: unheard(way.panel, heard, first),
+    )
     return pressure, time, listeners, attributes
 
 

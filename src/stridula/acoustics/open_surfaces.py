@@ -50,6 +50,8 @@ class Heard:
     def only(self, modes: Array) -> Heard:
         """Return it with some of its modes, by number in the body."""
         kept = np.flatnonzero(np.isin(self.numbers, modes))
+        if kept.size == self.numbers.size:
+            return self
         return replace(
             self, numbers=self.numbers[kept], responses=[replace(one, taps=one.taps[:, kept]) for one in self.responses]
         )
@@ -94,7 +96,8 @@ class OpenSurface:
     def heard(self, moving: Array, places: Array, air: Air, sampling: Sampling) -> Heard:
         """Return its sound, by fits at frequencies, for all its modes, as these fits are cached for the next run."""
         own, distances = places - self.origin, self.distances(places)
-        return by_fits(self.name, self.surface, self.numbers, self.frequency, own, distances, air, sampling)
+        sent = by_fits(self.name, self.surface, self.numbers, self.frequency, own, distances, air, sampling)
+        return sent.only(moving)
 
 
 def by_fits(

@@ -87,8 +87,8 @@ def radiate(
     xarray.DataArray, shape (time, listener)
         Pressure [Pa]. Time starts with the record, when the first sound is sent; until it arrives the pressure is zero.
         ``attrs`` have the bandwidth [Hz], up to which the sound is complete and above which it is cut off, the air, the
-        distances [m] to the nearest point of the track, and notes on missing parts. ``motion`` is "recorded", "driven
-        again", or both. For a system they have the names of the bodies and, as ``fit_error``, for each the largest
+        distances [m] to the nearest point of a body, and notes on missing parts. ``motion`` is "recorded", "driven
+        again", or both. For a system they have the names of the bodies. ``fit_error`` is for each body the largest
         relative error of its sources at the frequency of a mode: in the mode's normal motion over the surface, or for
         plates as sheets in the force of the air on the mode; nan for lines of dipoles and flat surfaces in a baffle.
         Notes state it where it is above 5 %.

@@ -16,15 +16,15 @@ import xarray as xr
 
 from ..arrays import Array
 from ..checks import ArgumentError
-from ..records.changes import check_one_system
 from ..records.dataset import MOTION_TIME
 from ..records.low_pass import gain
 from ..records.probes import ModalMotion
 from ..system import System
 from .driven import UNDONE
+from .motions import Motion
 from .recorded import sampled
-from .redriven import Moved
 
+RECORDED = "recorded"
 VARIABLE = ModalMotion.quantity
 MODES, BODY, FREQUENCY = (f"{VARIABLE}_{word}" for word in ("probe", "body", "frequency"))
 # Samples on each side from which an acceleration is computed, and number of frequencies of the fit.
@@ -33,78 +33,41 @@ REACH, FITTED = 32, 400
 SAME = 1e-9
 
 
-class RecordedModes:
-    """Modes of a track whose velocities are recorded.
+def recorded_motion(run: Any, body: Any, name: str | None = None, held: bool = False) -> Motion | None:
+    """Return the motion of the modes of a body if it is recorded.
 
     Parameters
     ----------
     run : xarray.Dataset
         The record.
-    columns : slice
-        Their columns among the recorded modes.
-
-    Attributes
-    ----------
-    start, interval : float
-        Time at which the record begins, and its sample interval [s].
-    samples : int
-        Number of its samples.
-    first : float
-        Time of the first acceleration [s].
-    begins : float or None
-        Time at which the track first moves [s from the start], None if it does not.
-    notes : list of str
-        Notes on missing parts.
+    body : object
+        The body.
+    name : str, optional
+        Its name in the record, any if left out.
+    held : bool, optional
+        Whether its root follows an imposed velocity.
     """
-
-    words = "recorded"
-
-    def __init__(self, run: xr.Dataset, columns: slice) -> None:
-        self.start, self.interval, self.steps, velocities = _recorded(run)
-        self._velocities = velocities[columns]
-        self.samples, self.first = self._velocities.shape[1], self.start + self.interval
-        self.begins = 0.0 if self._velocities.any() else None
-        self.notes: list[str] = []
-
-    def carried(self, angular_frequency: Array) -> Array:
-        """Return the numbers of the modes that are heard, all of them."""
-        return np.arange(angular_frequency.size)
-
-    def accelerations(self, modes: Any) -> Array:
-        """Return the accelerations of modes, by their numbers, shape (modes, samples) [m kg^(1/2) / s²]."""
-        return accelerations(self._velocities[modes], self.interval, self.steps)
-
-
-def recorded_modes(run: xr.Dataset, track: Any, name: str | None = None) -> RecordedModes | None:
-    """Return the motion of a track, of the given name or any, if it is recorded."""
     if VARIABLE not in getattr(run, "variables", ()):
         return None
-    frequency = track.modes().frequency
+    frequency = body.modes(held).frequency
     names = dict.fromkeys(run[BODY].values.tolist()) if name is None else [name]
     found = (_columns(run, one, frequency) for one in names)
     columns = next((one for one in found if one is not None), None)
-    return None if columns is None else RecordedModes(run, columns)
-
-
-def recorded_motion(run: Any, system: System, bodies: Sequence[Any]) -> Moved | None:
-    """Return the motion of the modes of bodies of a system if it is recorded for all of them."""
-    if VARIABLE not in getattr(run, "variables", ()):
+    if columns is None:
         return None
-    spans, parts, last = {}, [], 0
-    for body in bodies:
-        name = system.body_name(body)
-        frequency = body.modes(system.is_held(body)).frequency
-        columns = _columns(run, name, frequency)
-        if columns is None:
-            return None
-        parts.append(columns)
-        spans[name] = (last, last := last + frequency.size)
-    check_one_system(run)
-    start, interval, steps, values = _recorded(run)
-    found = np.concatenate([accelerations(values[columns], interval, steps) for columns in parts])
-    pushed = 0.0 if found.any() else None
-    left_out = np.zeros(len(found), dtype=bool)
-    return Moved(start, interval, found.shape[1], start + interval, found, left_out, pushed, spans, is_recorded=True)
+    start, interval, steps, velocities = _recorded(run)
+    own = velocities[columns]
+    return Motion(
+        start,
+        interval,
+        own.shape[1],
+        start + interval,
+        0.0 if own.any() else None,
+        np.arange(frequency.size),
+        lambda modes: accelerations(own[modes], interval, steps),
+        words=RECORDED,
+        still="it does not move",
+    )
 
 
 def accelerations(velocities: Array, interval: float, steps: int) -> Array:

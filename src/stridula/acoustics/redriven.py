@@ -1,6 +1,6 @@
-"""Accelerations of the modes of bodies in space, driven again by the forces of a record and by drives.
+"""Accelerations of the modes of bodies, driven again by the forces of a record and by drives.
 
-The counterpart of `driven` in three dimensions: forces act along the normal and both tangents of each contact. Pairs of
+The counterpart of `driven` for systems: forces act along the normal and all tangents of each contact. Pairs of
 modes of a body that turns are plain oscillators in the frame of their waves. Forces are turned into that frame and
 motion out of it, by the angle ``b`` of the waves, with ``J`` a quarter of a turn:
 
@@ -12,61 +12,95 @@ Modes that springs and dashpots couple are replaced by the modes of the coupled 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from ..arrays import Array
-from ..lowering import Assembly, TurningModes
+from ..lowering import TurningModes
 from ..system import System
 from .coupled_modes import coupled_response
 from .driven import FASTEST, Modes, respond
-from .driving import Driving, driving
+from .driving import Driving, driving, start_notes
+from .motions import CONTINUES, Motion
 
 
-@dataclass(frozen=True)
-class Moved:
-    """Motion of the modes of a system.
+class Redriven:
+    """Modes of a system driven again by forces, at rest before them.
 
-    Attributes
+    Modes that are coupled and those of bodies that turn are computed once, all others whenever they are needed.
+
+    Parameters
     ----------
-    start, interval : float
-        Time at which the record begins, and its sample interval [s].
-    samples : int
-        Number of its samples.
-    first : float
-        Time of the first acceleration [s].
-    accelerations : ndarray, shape (modes, samples + 2 LEAD)
-        Accelerations of all modes [m kg^(1/2) / s²], zero for those left out and for residual shapes.
-    left_out : ndarray of bool, shape (modes,)
-        Modes too fast for the samples.
-    pushed : float or None
-        Time at which the first force acts [s from the start], None if none does.
-    spans : dict
-        First mode of each body and the one after its last, by body name.
-    is_recorded : bool
-        Whether it is the recorded motion of the march itself.
+    given : Driving
+        The forces.
+    notes : sequence of str, optional
+        Notes on missing parts.
     """
 
-    start: float
-    interval: float
-    samples: int
-    first: float
-    accelerations: Array
-    left_out: Array
-    pushed: float | None
-    spans: dict[str, tuple[int, int]]
-    is_recorded: bool = False
+    def __init__(self, given: Driving, notes: Sequence[str] = ()) -> None:
+        self.given, self.notes, flat = given, notes, given.flat
+        self._is_kept = ~flat.massless & (flat.angular_frequency * given.interval < FASTEST)
+        self._is_kept[: flat.coupled] = ~flat.massless[: flat.coupled]
+        self._is_joint = np.arange(flat.mode_count) < flat.coupled
+        for turning in flat.turning:
+            self._is_joint[turning.pairs[np.array(turning.turning.drag) != 0.0]] = True
 
-    @property
-    def words(self) -> str:
-        """Origin of the motion, for attributes."""
-        return "recorded" if self.is_recorded else "driven again"
+    def of(self, name: str) -> Motion:
+        """Return the motion of a body by its name."""
+        given, (first, last) = self.given, self.given.flat.spans[name]
+        fast = self._joint[1] if first < given.flat.coupled else 0
+        left_out = [f"{fast} coupled modes above the limit of the record's sample rate are left out"] if fast else []
+        return Motion(
+            given.start,
+            given.interval,
+            given.samples,
+            given.first,
+            given.pushed,
+            np.flatnonzero(self._is_kept[first:last]),
+            lambda modes: self.accelerations(first + modes),
+            notes=[*left_out, *self.notes],
+        )
+
+    def accelerations(self, modes: Array) -> Array:
+        """Return the accelerations of modes, by their numbers, shape (modes, samples + 2 LEAD) [m kg^(1/2) / s²].
+
+        They are zero for residual shapes and for modes too fast for the samples.
+        """
+        flat, joint = self.given.flat, self._is_joint[modes]
+        found = np.zeros((modes.size, self.given.times.size))
+        if joint.any():
+            found[joint] = self._joint[0][np.searchsorted(np.flatnonzero(self._is_joint), modes[joint])]
+        alone = ~joint & self._is_kept[modes]
+        own = modes[alone]
+        oscillators = Modes(flat.angular_frequency[own], flat.damping_rate[own])
+        found[alone] = respond(oscillators, self.given.forces(own), self.given.interval)
+        return found
+
+    @cached_property
+    def _joint(self) -> tuple[Array, int]:
+        """Accelerations of the modes that are coupled or turn, and the number of coupled ones too fast."""
+        given, flat, interval = self.given, self.given.flat, self.given.interval
+        forces, at = given.forces(np.flatnonzero(self._is_joint)), np.cumsum(self._is_joint) - 1
+        found, fast = np.zeros_like(forces), 0
+        for turning in flat.turning:
+            turned = self._is_kept[turning.pairs[:, 0]] & (turning.pairs[:, 0] >= flat.coupled)
+            numbers = np.flatnonzero(turned & (np.array(turning.turning.drag) != 0.0))
+            pairs = turning.pairs[numbers].T
+            modes = Modes(flat.angular_frequency[pairs[0]], flat.damping_rate[pairs[0]])
+            drag = np.array(turning.turning.drag)[numbers, None]
+            found[at[pairs]] = _turning(modes, turning, drag, forces[at[pairs]], given.times, interval)
+        moving = np.flatnonzero(~flat.massless[: flat.coupled])
+        if moving.size:
+            block = np.ix_(moving, moving)
+            rows = at[moving]
+            found[rows], fast = coupled_response(flat.stiffness[block], flat.dissipation[block], forces[rows], interval)
+        return found, fast
 
 
-def redriven(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = None) -> Moved:
+def redriven(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = None) -> Redriven:
     """Return the motion of the modes of a system under the forces of a record, at rest before it.
 
     Only that of `bodies`, if given, and of all bodies whose modes springs couple to theirs.
@@ -76,53 +110,20 @@ def redriven(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = Non
     ValueError
         If the record is not usable or not one of the system.
     """
-    return moved_by(driving(run, system, bodies))
+    given = driving(run, system, bodies)
+    continues = given.start > 0.5 * given.interval
+    return Redriven(given, [CONTINUES] if continues else start_notes(system))
 
 
-def moved_by(given: Driving) -> Moved:
-    """Return the motion of modes under forces."""
-    found, left_out = _moved(given)
-    return Moved(
-        given.start, given.interval, given.samples, given.first, found, left_out, given.pushed, given.flat.spans
-    )
-
-
-def _moved(given: Driving) -> tuple[Array, Array]:
-    """Return the accelerations of all modes, and a mask of those too fast for the samples."""
-    flat, interval = given.flat, given.interval
-    forces, coupled = given.forces(np.arange(flat.mode_count)), flat.coupled
-    found = np.zeros_like(forces)
-    left_out = ~flat.massless & (flat.angular_frequency * interval >= FASTEST)
-    plain = ~flat.massless & ~left_out
-    plain[:coupled] = False
-    for turning in flat.turning:
-        pairs = turning.pairs[plain[turning.pairs[:, 0]] & (np.array(turning.turning.drag) != 0.0)]
-        plain[pairs] = False
-        found[pairs.T.ravel()] = _turning(flat, turning, pairs, forces, given.times, interval)
-    found[plain] = respond(Modes(flat.angular_frequency[plain], flat.damping_rate[plain]), forces[plain], interval)
-    moving = np.flatnonzero(~flat.massless[:coupled])
-    if moving.size:
-        block = np.ix_(moving, moving)
-        found[moving], fast = coupled_response(flat.stiffness[block], flat.dissipation[block], forces[moving], interval)
-        left_out[moving[moving.size - fast :]] = True
-    return found, left_out
-
-
-def _turning(
-    flat: Assembly, turning: TurningModes, pairs: Array, forces: Array, times: Array, interval: float
-) -> Array:
-    """Return the accelerations of pairs of modes of a body that turns, first ones before second ones."""
-    drags = {tuple(pair): drag for pair, drag in zip(turning.pairs.tolist(), turning.turning.drag, strict=True)}
-    drag = np.array([drags[tuple(pair)] for pair in pairs.tolist()])[:, None]
+def _turning(modes: Modes, turning: TurningModes, drag: Array, forces: Array, times: Array, interval: float) -> Array:
+    """Return the accelerations of pairs of modes of a body that turns, shape (2, pairs, samples) as the forces."""
     rate = drag * turning.turning.rate(times)
     angle = drag * turning.turning.velocity * turning.turning.history.integral(times)
     change = np.gradient(rate, interval, axis=1)
-    first, second = pairs.T
     cosine, sine = np.cos(angle), np.sin(angle)
-    ahead, behind = cosine * forces[first] + sine * forces[second], cosine * forces[second] - sine * forces[first]
-    modes = Modes(flat.angular_frequency[first], flat.damping_rate[first])
+    ahead, behind = cosine * forces[0] + sine * forces[1], cosine * forces[1] - sine * forces[0]
     (x, y), (u, v), (a, b) = (
         [respond(modes, force, interval, derivative) for force in (ahead, behind)] for derivative in range(3)
     )
     a, b = a - 2.0 * rate * v - change * y - rate**2 * x, b + 2.0 * rate * u + change * x - rate**2 * y
-    return np.concatenate([cosine * a - sine * b, sine * a + cosine * b])
+    return np.stack([cosine * a - sine * b, sine * a + cosine * b])

@@ -16,11 +16,12 @@ from .delays import Sampling
 from .dipoles import dipole_response, moved_area
 from .distances import NEAREST
 from .free_responses import STOP_BEYOND, WHOLE_BEYOND
-from .listeners import check_in_front, check_off_beam, check_off_panel
+from .listeners import check_off_beam, check_off_panel
 from .open_surfaces import HIGHEST, Heard, by_fits
 from .panels import Panel, line_of, panel_of
 from .rayleigh import baffled_response
 from .sheets import Sheet, sheet_of
+from .slim_beams import slim_below
 from .surfaces import surface_of
 
 
@@ -33,20 +34,17 @@ class Way(Protocol):
         Largest bandwidth of its sound [Hz].
     in_a_wall : bool
         Whether it is flush with a rigid infinite wall.
-    nearest : float
-        Smallest distance of a listener [m].
     """
 
     most: ClassVar[float]
     in_a_wall: ClassVar[bool]
-    nearest: float
 
     @property
     def panel(self) -> Panel:
         """Its surface and the modes that bend it."""
 
-    def check(self, listeners: Array) -> None:
-        """Raise ValueError if a listener is at a place without sound, inside a body or behind the baffle."""
+    def distances(self, listeners: Array, as_given: Array) -> Array:
+        """Return the distances of listeners [m]; raise ValueError, with the place as given, for one on the track."""
 
     def heard(self, modes: Array, listeners: Array, air: Air, sampling: Sampling) -> Heard:
         """Return the sound of modes, by number in the panel, at every listener."""
@@ -70,14 +68,13 @@ class Baffled:
 
     most: ClassVar[float] = np.inf
     in_a_wall: ClassVar[bool] = True
-    nearest = 0.0
 
     def __init__(self, panel: Panel) -> None:
         self.panel = panel
 
-    def check(self, listeners: Array) -> None:
-        """Raise ValueError if a listener is in the wall or behind it."""
-        check_in_front(listeners)
+    def distances(self, listeners: Array, as_given: Array) -> Array:
+        """Return the distances of listeners from its surface."""
+        return self.panel.distances(listeners)
 
     def heard(self, modes: Array, listeners: Array, air: Air, sampling: Sampling) -> Heard:
         """Return the responses at every listener."""
@@ -98,11 +95,11 @@ class SlimLine:
 
     def __init__(self, beam: Any, panel: Panel) -> None:
         self.beam, self.panel, self.area = beam, panel, moved_area(beam.section)
-        self.nearest = beam.section.across / 2.0
 
-    def check(self, listeners: Array) -> None:
-        """Raise ValueError if a listener is on the beam."""
-        check_off_beam(listeners, self.beam.length, self.nearest)
+    def distances(self, listeners: Array, as_given: Array) -> Array:
+        """Return the distances of listeners from its axis."""
+        check_off_beam(listeners, self.beam.length, self.beam.section.across / 2.0, as_given)
+        return self.panel.distances(listeners)
 
     def heard(self, modes: Array, listeners: Array, air: Air, sampling: Sampling) -> Heard:
         """Return the responses at every listener, with a note on the frequency up to which they are valid."""
@@ -122,9 +119,11 @@ class Thin:
         self.plate, self.name, self.panel = plate, name or "the plate", panel_of(plate)
         self.nearest = NEAREST * float(np.hypot(plate.length, plate.width))
 
-    def check(self, listeners: Array) -> None:
-        """Raise ValueError if a listener is on the plate."""
-        check_off_panel(self.panel.distances(listeners), self.nearest, listeners)
+    def distances(self, listeners: Array, as_given: Array) -> Array:
+        """Return the distances of listeners from the plate."""
+        found = self.panel.distances(listeners)
+        check_off_panel(found, self.nearest, as_given)
+        return found
 
     def heard(self, modes: Array, listeners: Array, air: Air, sampling: Sampling) -> Heard:
         """Return the responses at every listener, with a note if the sheet has too few points for the bandwidth."""
@@ -145,13 +144,3 @@ def _sheet(plate: ModalPlate) -> Sheet:
     frequency = panel.angular_frequency / (2.0 * np.pi)
     low = panel.only(frequency <= max(FINE_ENOUGH, float(frequency[0])))
     return sheet_of(low, min(FINE_ENOUGH, STOP_BEYOND * float(low.angular_frequency.max()) / (2.0 * np.pi)))
-
-
-def line_note(name: str, beam: Any, air: Air) -> str:
-    """Return a note on a beam as a line of dipoles."""
-    return f"{name}: a line of dipoles, slim below {slim_below(beam, air):.4g} Hz"
-
-
-def slim_below(beam: Any, air: Air) -> float:
-    """Return the frequency [Hz] below which a beam is slim: its width is a sixth of the wavelength."""
-    return float(air.speed / (6.0 * beam.section.largest_side))

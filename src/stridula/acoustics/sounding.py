@@ -14,11 +14,10 @@ from ..bodies.body_surfaces import HIGHEST as FINE_ENOUGH
 from ..checks import ArgumentError, listed
 from .air import Air
 from .delays import Sampling
-from .listeners import check_off_panel
-from .open_surfaces import HIGHEST, STILL, Heard, open_surface
+from .open_surfaces import HIGHEST, Heard, open_surface
 from .panels import is_flat
-from .responses import Way, line_note, slim_below, way_of
-from .slim_beams import SlimBeam, slim_beam
+from .responses import Way, way_of
+from .slim_beams import SlimBeam, line_along, slim_below
 
 # Frequency up to which a beam must be slim to be a line of dipoles, over that of its highest mode.
 BEYOND = 1.2
@@ -38,6 +37,12 @@ class Wall:
 
     origin: Array
     normal: Array
+
+    def check(self, places: Array) -> None:
+        """Raise ValueError if one of the places is not in front of it."""
+        for place, height in zip(places, self.heights(places), strict=True):
+            if height <= 0.0:
+                raise ArgumentError("listener", "be in front of the baffle", got=f"{tuple(place.tolist())}")
 
     def heights(self, places: Array) -> Array:
         """Return the distances of places in front of it [m], negative behind it."""
@@ -68,6 +73,10 @@ class Sounding(Protocol):
         """Largest bandwidth of its sound [Hz]."""
 
     @property
+    def numbers(self) -> Array:
+        """Numbers of its modes that sound, shape (modes,)."""
+
+    @property
     def points(self) -> Array:
         """Places on it in the world [m], shape (points, 3)."""
 
@@ -80,43 +89,6 @@ class Sounding(Protocol):
 
     def heard(self, moving: Array, places: Array, air: Air, sampling: Sampling) -> Heard:
         """Return its sound at places; `moving` are the numbers of the modes that move."""
-
-
-@dataclass(frozen=True)
-class Slim:
-    """A slim beam in open air as a line of dipoles.
-
-    Attributes
-    ----------
-    name : str
-        Name of the body.
-    beam : SlimBeam
-        The beam, in the axes of the world.
-    """
-
-    most: ClassVar[float] = np.inf
-    wall: ClassVar[None] = None
-    is_line: ClassVar[bool] = True
-    name: str
-    beam: SlimBeam
-
-    @property
-    def points(self) -> Array:
-        """Its two ends."""
-        along = self.beam.frame[0]
-        return self.beam.origin + np.outer([0.0, self.beam.length], along)
-
-    def distances(self, places: Array) -> Array:
-        """Return the distances to its axis."""
-        return self.beam.distances(places)
-
-    def heard(self, moving: Array, places: Array, air: Air, sampling: Sampling) -> Heard:
-        """Return the sound of the modes that move."""
-        beam = self.beam.only(np.flatnonzero(np.isin(self.beam.numbers, moving)))
-        if not beam.numbers.size:
-            return Heard(beam.numbers, [])
-        notes = [line_note(self.name, beam.body, air)]
-        return Heard(beam.numbers, beam.responses(places, air, sampling), notes=notes)
 
 
 @dataclass(frozen=True)
@@ -147,6 +119,11 @@ class Flat:
         return self.way.most
 
     @property
+    def numbers(self) -> Array:
+        """Numbers of the modes that bend it; modes with the same sine along x are adjacent."""
+        return np.argsort(self.way.panel.wavenumbers[:, 0], kind="stable")
+
+    @property
     def points(self) -> Array:
         """Its four corners."""
         panel = self.way.panel
@@ -161,22 +138,13 @@ class Flat:
     def distances(self, places: Array) -> Array:
         """Return the distances to its surface."""
         if self.wall is not None:
-            for place, height in zip(places, self.wall.heights(places), strict=True):
-                if height <= 0.0:
-                    raise ArgumentError("listener", "be in front of the baffle", got=f"{tuple(place.tolist())}")
-        found = self.way.panel.distances(self._own(places))
-        check_off_panel(found, self.way.nearest, places)
-        return found
+            self.wall.check(places)
+        return self.way.distances(self._own(places), places)
 
     def heard(self, moving: Array, places: Array, air: Air, sampling: Sampling) -> Heard:
         """Return the sound of the modes that bend it."""
-        waves = self.way.panel.wavenumbers
-        bending = moving[moving < len(waves)]
-        if not bending.size:
-            return Heard(bending, [])
-        # Modes with the same sine along x are adjacent.
-        bending = bending[np.argsort(waves[bending, 0], kind="stable")]
-        return self.way.heard(bending, self._own(places), air, sampling)
+        bending = self.numbers[np.isin(self.numbers, moving)]
+        return self.way.heard(bending, self._own(places), air, sampling) if bending.size else Heard(bending, [])
 
     def _own(self, places: Array) -> Array:
         return np.asarray((places - self.corner) @ self.frame.T)
@@ -207,21 +175,18 @@ def sounding_of(name: str, body: Any, held: bool, origin: Array, baffled: bool, 
     modes = body.modes(held)
     if not hasattr(body, "section"):
         return open_surface(name, body.surface(), modes, origin)
-    line = line_in_space(body, held, origin)
+    line = line_in_space(name, body, held, origin)
     if is_slim(line, modes, air):
-        return Slim(name, line)
+        return line
     surface = body.surface(held_x=True) if held else body.surface()
     # A beam of finite elements may have more modes than its surface resolves.
     return open_surface(name, surface, modes, origin, FINE_ENOUGH)
 
 
-def line_in_space(beam: Any, held: bool, origin: Array) -> SlimBeam:
-    """Return a beam as a line, with the modes that bend it."""
+def line_in_space(name: str, beam: Any, held: bool, origin: Array) -> SlimBeam:
+    """Return a beam in space as a line of dipoles, with the modes that bend it."""
     along, across = (in_space(axis) for axis in beam.axes)
-    frame = np.array([along, np.cross(across, along), across])
-    every = slim_beam(beam, held, np.arange(beam.modes(held).count), frame, origin)
-    moved = np.abs(every.shapes(beam.drawn_places, beam.drawn_places)).max(axis=0)
-    return every.only(np.flatnonzero(moved > STILL * moved.max(initial=0.0)))
+    return line_along(name, beam, held, along, across, origin)
 
 
 def is_slim(line: SlimBeam, modes: Modes, air: Air) -> bool:

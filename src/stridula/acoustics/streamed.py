@@ -14,7 +14,7 @@ from ..bodies import ModalBeam, ModalPlate
 from .air import Air
 from .delays import Sampling
 from .driven import DEGREE, FASTEST, LEAD, filters, undo_mean
-from .listeners import listeners_of
+from .listeners import check_in_front, listeners_of
 from .panels import panel_of
 from .recorded import BEFORE
 from .resampling import ATTENUATION, BANDWIDTH, bandwidth_of
@@ -66,7 +66,7 @@ class StreamedSound:
     ) -> None:
         way, air = Baffled(panel_of(track)), Air() if air is None else air
         listeners = listeners_of(listener)
-        way.check(listeners)
+        check_in_front(listeners)
         kept = np.flatnonzero(way.panel.angular_frequency * interval < FASTEST)
         panel = way.panel.only(kept)
         self.steps, self.taps = steps, undo_mean(steps)
