@@ -1,4 +1,4 @@
-"""Recipes of CONTRIBUTING for a law of friction, a probe and a verb, followed in a copy of the package."""
+"""Recipes of CONTRIBUTING for a law, a probe, a verb and a setting, followed in a copy of the package."""
 
 from __future__ import annotations
 
@@ -242,6 +242,91 @@ sys.argv = ["stridula", *sys.argv[1:]]
 main()
 """
 
+# A setting that is noted in records: file, text there, text in its place.
+SETTING_STEPS = (
+    (
+        "integration/settings.py",
+        "    motion_rate: float | None\n",
+        "    motion_rate: float | None\n    humidity: float\n",
+    ),
+    (
+        "integration/settings.py",
+        "    motion_rate: Frequency | None = None\n",
+        "    motion_rate: Frequency | None = None\n    humidity: Coefficient = 0.5\n",
+    ),
+    (
+        "integration/settings.py",
+        "        If left out, only such probes, at the sample rate.\n",
+        "        If left out, only such probes, at the sample rate.\n"
+        "    humidity : float, optional\n        Humidity of the air [1]; noted in the record.\n",
+    ),
+    ("integration/settings.py", "import Frequency, Time, declared", "import Coefficient, Frequency, Time, declared"),
+    (
+        "integration/run.py",
+        '            "state_layout": LAYOUT,\n',
+        '            "state_layout": LAYOUT,\n            "humidity": self.settings.humidity,\n',
+    ),
+)
+SETTING_SCRIPT = """
+import inspect
+import json
+import stridula as st
+from stridula.integration.many import Options
+from stridula.integration.settings import Given
+
+def refused(call, *given, **options):
+    try:
+        call(*given, **options)
+    except ValueError as error:
+        return str(error)
+
+def noted(run):
+    return run.attrs["humidity"]
+
+body = st.PointMass(1.0, name="mass")
+contact = st.PointContact(body.centre, st.RigidTrack(velocity=1.0), friction=st.Coulomb(0.3))
+system = st.System(contact, [st.Force(body.centre, y=-1.0)])
+run = st.simulate(system, 0.01, humidity=0.7)
+again = st.load_scenario(run)
+
+def made(mass):
+    return system, {"duration": 0.01, "humidity": mass}
+
+functions = st.simulate, st.simulate_many
+print(json.dumps({
+    "by default": noted(st.simulate(system, 0.01)),
+    "alone": noted(run),
+    "side by side": [noted(one) for one in st.simulate_many([system] * 4, 0.01, humidity=0.2)],
+    "read from a record": again.humidity,
+    "run again": noted(again.simulate()),
+    "set by key": noted(st.load_scenario(run, {"humidity": "30 %"}).simulate()),
+    "swept": st.sweep(run, {"humidity": [0.1, 0.9]}, {"noted": noted}, workers=1).noted.values.tolist(),
+    "made": st.sweep(made, {"mass": [0.4, 0.6]}, {"noted": noted}, workers=1).noted.values.tolist(),
+    "refused": refused(st.simulate, system, 0.01, humidity=-1.0),
+    "refused in tables": refused(st.load_scenario, run, {"humidity": -1.0}),
+    "described": st.scenario_schema()["$defs"]["Simulation"]["properties"]["humidity"]["description"],
+    "shown": [str(inspect.signature(one).parameters["humidity"]) for one in functions],
+    "documented": ["Humidity of the air" in one.__doc__ for one in (*functions, st.Scenario)],
+    "typed": ["humidity" in one.__annotations__ for one in (Given, Options)],
+}))
+"""
+ARRIVED = {
+    "by default": 0.5,
+    "alone": 0.7,
+    "side by side": [0.2] * 4,
+    "read from a record": 0.7,
+    "run again": 0.7,
+    "set by key": 0.3,
+    "swept": [0.1, 0.9],
+    "made": [0.4, 0.6],
+    "refused": "humidity must be 0 or above, got -1.0",
+    "refused in tables": "simulation.humidity must be 0 or above, got -1.0",
+    "described": "humidity of the air",
+    "shown": ["humidity: 'float' = 0.5"] * 2,
+    "documented": [True] * 3,
+    "typed": [True] * 2,
+}
+
 
 def copied(folder: Path, steps: Steps, added: dict[str, str] | None = None) -> None:
     """Follow the steps in a copy of the package, with some files added."""
@@ -319,3 +404,18 @@ def test_a_verb_that_is_not_entered_is_unknown(tmp_path):
     """Negative control."""
     copied(tmp_path, (), {"cli/masses.py": VERB})
     assert ran(tmp_path, VERB_SCRIPT, "masses", "squeal").returncode == 2
+
+
+def test_a_setting_arrives_everywhere_after_the_steps_of_the_recipe(tmp_path):
+    """Declared in one file and read where it acts; arguments, keys, sweeps, records and messages follow."""
+    assert len({name for name, *_ in SETTING_STEPS}) == 2
+    copied(tmp_path, SETTING_STEPS)
+    done = ran(tmp_path, SETTING_SCRIPT)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout) == ARRIVED
+
+
+def test_a_setting_that_nothing_reads_is_noticed(tmp_path):
+    """Negative control."""
+    copied(tmp_path, SETTING_STEPS[:-1])
+    assert "KeyError: 'humidity'" in ran(tmp_path, SETTING_SCRIPT).stderr

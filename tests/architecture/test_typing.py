@@ -15,6 +15,7 @@ import pytest
 
 import stridula
 from stridula.integration.many import Options
+from stridula.integration.settings import NAMES, Given
 
 ROOT = Path(stridula.__file__).parent
 SCRIPT = Path(__file__).with_name("user_script.py")
@@ -75,6 +76,10 @@ def test_types_of_results_are_known_for_every_argument():
     given = inspect.signature(stridula.simulate_many).parameters.values()
     named = {one.name for one in given if one.kind is inspect.Parameter.KEYWORD_ONLY} - {"errors", "labelled"}
     assert named == set(Options.__annotations__)
+
+
+def test_settings_are_typed_as_arguments():
+    assert list(Given.__annotations__) == list(NAMES)
 
 
 def test_every_package_that_imports_on_first_use_has_a_stub():

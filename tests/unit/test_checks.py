@@ -18,8 +18,8 @@ from stridula._kernels.slipping import STOPPED
 from stridula.acoustics.pressures import check_length, check_rate
 from stridula.acoustics.resampling import LOWEST, ratio_of
 from stridula.checks import at_least, at_most, listed, within
-from stridula.integration.simulate import choose_timing
 from stridula.integration.stops import CAUSE, Diverged, contact_words
+from stridula.integration.timing import choose_timing
 from stridula.lowering import assemble
 
 NUMBER = r"(-?[0-9][0-9.]*(?:e[-+]?[0-9]+)?)"

@@ -17,7 +17,8 @@ from physics.cases import CASES, STEP, pair, slider, track, transverse
 import stridula as st
 from stridula.analysis import regime_of
 from stridula.integration import many
-from stridula.integration.simulate import Asked
+from stridula.integration.preparation import Preparation
+from stridula.integration.settings import Settings
 from stridula.studies.ensembles import _perturbed
 
 WORDS = {"step": STEP, "sample_rate": 0.1 / STEP}
@@ -59,9 +60,9 @@ def test_runs_side_by_side_are_those_alone():
 
 
 def test_groups_are_of_one_kind_and_full_where_they_can():
-    asked = Asked(0.1, None, STEP, 1e4, None, None)
+    preparation = Preparation(0.1, Settings(step=STEP, sample_rate=1e4))
     systems = [*squeals(10), CASES["judder"](), *squeals(3)]
-    groups = many._groups({number: asked.arrays(system) for number, system in enumerate(systems)})
+    groups = many._groups({number: preparation.arrays(system) for number, system in enumerate(systems)})
     assert groups == [[0, 1, 2, 3, 4, 5, 6, 7], [8, 9, 11, 12, 13], [10]]
 
 

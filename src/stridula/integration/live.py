@@ -28,9 +28,9 @@ from .decimation import Decimator
 from .equilibrium_start import in_equilibrium
 from .marches import Impositions, March
 from .run import CONTACT_COLUMN, ENERGY_COLUMN, along_both
-from .simulate import choose_timing
 from .start import state_at_start, stored_in_contacts
 from .stops import ENDED
+from .timing import choose_timing
 
 # Share of the lowest frequency of vibration below which a mode counts as free when contacts are opened.
 SOFT = 0.3

@@ -8,8 +8,9 @@ import time
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
-from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
+from typing import Any, Literal, TypeVar, Unpack, overload
 
 import xarray as xr
 
@@ -17,17 +18,15 @@ from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
 from ..checks import ArgumentError, choice, count, counted
 from ..lowering import Assembly, ContactRows
-from ..lowering.schemes import Scheme
-from ..records import Probe
 from ..records.dataset import RECORDED
 from ..records.plain import PlainRecord
 from ..system import System
 from .bars import time_shown
-from .contact_solve import GaussSeidel
 from .cuda_march import CudaMarch, require_cuda
 from .marches import March
+from .preparation import Arrays, Preparation
 from .run import Run
-from .simulate import Arrays, Asked
+from .settings import Given, settings_of, shows_settings
 from .surface_records import ALL_POINTS
 from .together import march_together
 from .watchers import Progress, Watcher
@@ -42,16 +41,9 @@ DEVICES: dict[str, type[March]] = {"cpu": March, "cuda": CudaMarch}
 T = TypeVar("T")
 
 
-class Options(TypedDict, total=False):
+class Options(Given, total=False):
     """Arguments of `simulate_many` that do not change the type of its result."""
 
-    scheme: Scheme | None
-    step: float | None
-    sample_rate: float
-    probes: Sequence[Probe] | None
-    contact_solve: GaussSeidel | None
-    surface_rate: float | str | None
-    motion_rate: float | None
     device: str
     workers: int | None
     watchers: Sequence[Watcher]
@@ -109,18 +101,12 @@ def simulate_many(
 ) -> list[Any]: ...
 
 
+@shows_settings
 def simulate_many(
     systems: Sequence[System],
     duration: float,
     reduce: Callable[[Any], Any] | None = None,
     *,
-    scheme: Scheme | None = None,
-    step: float | None = None,
-    sample_rate: float = 100e3,
-    probes: Sequence[Probe] | None = None,
-    contact_solve: GaussSeidel | None = None,
-    surface_rate: float | str | None = None,
-    motion_rate: float | None = None,
     device: str = "cpu",
     workers: int | None = None,
     watchers: Sequence[Watcher] = (),
@@ -130,6 +116,7 @@ def simulate_many(
     labelled: bool = True,
     variables: Sequence[str] | None = None,
     progress: bool = False,
+    **settings: Unpack[Given],
 ) -> list[Any]:
     """March many systems in time, several at once on each processor.
 
@@ -148,20 +135,8 @@ def simulate_many(
         Time to simulate [s].
     reduce : callable, optional
         Called with each record as soon as it is complete, in a thread; its result is kept in place of the record.
-    scheme : CentralDifference or ExactModal, optional
-        Time scheme; the exact modal one if left out.
-    step : float, optional
-        Time step [s]; if left out, the shortest of the default steps of the systems.
-    sample_rate : float, optional
-        Samples per second to record [Hz].
-    probes : sequence of probes, optional
-        Further quantities to record, on bodies of all systems; as for `simulate` if left out.
-    contact_solve : GaussSeidel, optional
-        Settings of the simultaneous solution of several contacts.
-    surface_rate : float or str, optional
-        Recording of surfaces, as for `simulate`; if left out, plain records have all points as contacts.
-    motion_rate : float, optional
-        Rate at which the motion of bodies is recorded [Hz], as for `simulate`.
+    **settings
+        Settings of the run.
     device : {"cpu", "cuda"}, optional
         Device for runs of the same kind: the processors, or an NVIDIA GPU with all at once, one in each thread.
     workers : int, optional
@@ -201,6 +176,7 @@ def simulate_many(
     --------
     simulate : Simulate one system; describes the content of a record.
     """
+    asked = settings_of("simulate_many", settings)
     if not isinstance(systems, Sequence) or isinstance(systems, str):
         raise ArgumentError("systems", "be a list of systems", systems)
     if reduce is not None and not callable(reduce):
@@ -215,31 +191,32 @@ def simulate_many(
     wanted = _wanted(variables, labelled)
     if device == "cuda":
         require_cuda()
-    if surface_rate is None and not labelled:
-        surface_rate = ALL_POINTS
-    asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve, surface_rate, motion_rate)
+    if asked.surface_rate is None and not labelled:
+        asked = replace(asked, surface_rate=ALL_POINTS)
+    preparation = Preparation(duration, asked)
     results = _Results(errors == "return")
     record = partial(Run.record, provenance=provenance) if labelled else Run.plain_record
     with time_shown(progress, title or f"simulate {counted(len(systems), 'system')}") as more:
-        arrays = _arrays(systems, asked, results)
+        arrays, preparation = _arrays(systems, preparation, results)
         told = [*watchers, *more]
-        together = _Together(asked, arrays, record, reduce, told, DEVICES[device], title, results, wanted)
+        together = _Together(preparation, arrays, record, reduce, told, DEVICES[device], title, results, wanted)
         together.march_all(_groups(arrays, device), workers or os.cpu_count() or 1)
     return [results.found[number] for number in range(len(systems))]
 
 
-def _arrays(systems: Sequence[System], asked: Asked, results: _Results) -> dict[int, Arrays]:
-    """Return the systems that can be simulated as flat arrays, and set the shortest of their steps for all."""
+def _arrays(
+    systems: Sequence[System], preparation: Preparation, results: _Results
+) -> tuple[dict[int, Arrays], Preparation]:
+    """Return the systems that can be simulated as flat arrays, and their preparation at the shortest of their steps."""
     arrays: dict[int, Arrays] = {}
     steps = []
     for number, system in enumerate(systems):
         with results.failing(number, f"systems[{number}]"):
-            one = asked.arrays(system)
-            steps.append(asked.timing(one).step)
+            one = preparation.arrays(system)
+            steps.append(preparation.timing(one).step)
             arrays[number] = one
-    if asked.step is None:
-        asked.common_step = min(steps, default=None)
-    return arrays
+    is_given = preparation.settings.step is not None
+    return arrays, preparation if is_given else replace(preparation, common_step=min(steps, default=None))
 
 
 def _wanted(variables: Sequence[str] | None, labelled: bool) -> Sequence[str]:
@@ -331,7 +308,7 @@ class _Together:
 
     def __init__(
         self,
-        asked: Asked,
+        preparation: Preparation,
         arrays: Mapping[int, Arrays],
         record: Callable[[Run], xr.Dataset | PlainRecord],
         reduce: Callable[[Any], Any] | None,
@@ -342,7 +319,7 @@ class _Together:
         wanted: Sequence[str] = RECORDED,
     ) -> None:
         self.side_by_side, self.title, self.began = side_by_side, title, time.perf_counter()
-        self.asked, self.arrays, self.reduce, self.watchers = asked, arrays, reduce, watchers
+        self.preparation, self.arrays, self.reduce, self.watchers = preparation, arrays, reduce, watchers
         self.record, self.results, self.wanted = record, results, wanted
         self.stop, self.lock, self.simulated = threading.Event(), threading.Lock(), 0.0
 
@@ -366,7 +343,7 @@ class _Together:
         started: dict[int, Run] = {}
         for number in group:
             with self.results.failing(number):
-                started[number] = self.asked.run(self.arrays[number], title=self.title)
+                started[number] = self.preparation.run(self.arrays[number], title=self.title)
                 if self.wanted is not RECORDED:
                     started[number].keep_only(self.wanted)
         runs = list(started.values())
@@ -384,7 +361,7 @@ class _Together:
     def _march_of(self, runs: Sequence[Run]) -> March:
         timing = runs[0].timing
         blocks, states = [run.blocks for run in runs], [run.state for run in runs]
-        return self.side_by_side(blocks, states, timing.step, timing.ratio, self.asked.solve)
+        return self.side_by_side(blocks, states, timing.step, timing.ratio, self.preparation.settings.solve)
 
     def _watch(self, runs: Sequence[Run]) -> Watcher:
         """Return a watcher that reports the progress of all runs, and stops the group if another one has failed."""

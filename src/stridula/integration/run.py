@@ -15,7 +15,6 @@ from ..linear.free_motions import free_words
 from ..lowering import Assembly
 from ..lowering.blocks import blocks_of
 from ..lowering.model_ends import notes_of
-from ..lowering.schemes import Scheme
 from ..records import Probe
 from ..records.dataset import RECORDED, over_time, to_dataset
 from ..records.plain import PlainRecord
@@ -30,6 +29,7 @@ from .equilibrium_start import in_equilibrium, note_of_start
 from .marches import Chunk, Imposed, Impositions
 from .probe_records import ProbeRecords
 from .restart import imposed_at, motion_about, moved_on, state_of
+from .settings import Settings
 from .start import state_at_start
 from .stops import ENDED, contact_words, divergence_words, rank_words
 from .surface_records import ALL_POINTS, SurfaceRecord
@@ -68,21 +68,21 @@ class Run:
         self,
         system: System,
         arrays: Assembly,
-        scheme: Scheme,
-        timing: Timing,
         probes: Sequence[Probe],
-        solve: GaussSeidel,
+        settings: Settings,
+        timing: Timing,
         start: xr.Dataset | None,
         title: str,
         surfaces: SurfaceRecord | None = None,
     ) -> None:
-        self.system, self.arrays, self.scheme = system, arrays, scheme
-        self.timing, self.probes, self.solve, self.title = timing, probes, solve, title
+        scheme = settings.scheme
+        self.system, self.arrays, self.probes = system, arrays, probes
+        self.settings, self.timing, self.title = settings, timing, title
         self.blocks = blocks_of(arrays, scheme, timing.step)
         self.described, self.offset = arrays.motion, np.zeros((len(arrays.contacts), at.MOTIONS))
         if start is None:
             placed = in_equilibrium(system, arrays)
-            self.state = state_at_start(placed, scheme, timing.step, self.blocks, solve)
+            self.state = state_at_start(placed, scheme, timing.step, self.blocks, settings.solve)
             self.first_step, self.initial_energy = 0, float(self.state.energies[at.STORED])
             before = None
         else:
@@ -240,13 +240,13 @@ class Run:
             "source": f"stridula {__version__}",
             "stridula_version": __version__,
             **scenario,
-            "scheme": self.scheme.name,
+            "scheme": self.settings.scheme.name,
             "step": timing.step,
             "steps_per_sample": timing.ratio,
             "sample_interval": timing.interval,
             "modes": self.arrays.mode_count,
             "notes": "; ".join([*notes, *note_of_start(self.system), *self._note_of_contacts()]),
-            "contact_tolerance": self.solve.tolerance,
+            "contact_tolerance": self.settings.solve.tolerance,
             "initial_energy": self.initial_energy,
             "largest_energy": self.belief.largest_energy,
             "state_layout": LAYOUT,
@@ -262,7 +262,7 @@ class Run:
         timing = self.timing
         simulation: dict[str, Any] = {
             "duration": self.first_step * timing.step + timing.samples * timing.interval,
-            "scheme": self.scheme.name,
+            "scheme": self.settings.scheme.name,
             "step": timing.step,
             "sample_rate": float(f"{1.0 / timing.interval:.12g}"),
         }
@@ -273,9 +273,9 @@ class Run:
                 simulation["surface_rate"] = float(f"{1.0 / (timing.interval * self.surfaces.every):.12g}")
         elif self.system.faces:
             simulation["surface_rate"] = ALL_POINTS
-        if self.solve != GaussSeidel():
-            simulation["contact_solve"] = asdict(self.solve)
-        return scenario_toml(self.system, self.probes, simulation)
+        if self.settings.solve != GaussSeidel():
+            simulation["contact_solve"] = asdict(self.settings.solve)
+        return scenario_toml(self.system, self.probes, simulation | self.settings.others)
 
 
 def along_both(pairs: Array, firsts: Array) -> Array:

@@ -12,7 +12,7 @@ import xarray as xr
 from ..arrays import Array
 from ..checks import ArgumentError, at_most, non_negative, positive
 from ..integration import simulate
-from ..integration.simulate import choose_timing
+from ..integration.timing import choose_timing
 from ..lowering import assemble
 from ..lowering.schemes import ExactModal, Scheme
 from ..records import Displacement, ModalDisplacement, ModalVelocity, Probe

@@ -12,9 +12,9 @@ import xarray as xr
 from pydantic import ValidationError
 
 from ..checks import ArgumentError, by_key
-from ..integration import SCHEMES, CentralDifference, ExactModal, GaussSeidel, simulate
+from ..integration import SCHEMES, simulate
+from ..integration.settings import NAMES, Settings, shows_settings
 from ..ordinary import NotOrdinary
-from ..records import Probe
 from ..records.provenance import body_table, mesh_tables
 from ..system import System
 from .build import Builder, out_of_range
@@ -24,9 +24,23 @@ from .keys import overridden
 from .read import names_files, read_tables
 from .schema import ScenarioTable
 
+# Settings that tables describe otherwise than the Python API.
+BUILT = ("scheme", "probes", "contact_solve")
+
 
 @dataclass(frozen=True)
-class Scenario:
+class _Described:
+    """The first fields of a scenario."""
+
+    title: str
+    description: str
+    system: System
+    duration: float
+
+
+@shows_settings
+@dataclass(frozen=True)
+class Scenario(Settings, _Described):
     """A system and the settings of its simulation.
 
     Attributes
@@ -37,33 +51,14 @@ class Scenario:
         System to simulate.
     duration : float
         Time to simulate [s].
-    scheme : ExactModal or CentralDifference
-        Time scheme.
-    step : float or None
-        Time step [s]; the scheme's default if None.
-    sample_rate : float
-        Samples recorded per second [Hz].
-    probes : tuple of probes or None
-        Additional quantities to record; the acceleration of the track's centre if None.
-    contact_solve : GaussSeidel or None
-        Solver of several contacts; the default if None.
-    surface_rate : float, str or None
-        Recording of surfaces, as for `simulate`: maps per second [Hz], or ``"all"`` points at every sample.
-    motion_rate : float or None
-        Rate at which the motion of bodies is recorded for their sound [Hz]; only probes if None.
+    **settings
+        Settings of the run.
     """
 
-    title: str
-    description: str
-    system: System
-    duration: float
-    scheme: ExactModal | CentralDifference
-    step: float | None
-    sample_rate: float
-    probes: tuple[Probe, ...] | None
-    contact_solve: GaussSeidel | None = None
-    surface_rate: float | str | None = None
-    motion_rate: float | None = None
+    @property
+    def settings(self) -> Settings:
+        """The settings alone."""
+        return Settings(**{name: getattr(self, name) for name in NAMES})
 
     def simulate(self, **kwargs: Any) -> xr.Dataset:
         """Simulate the system in time and return its record.
@@ -78,9 +73,7 @@ class Scenario:
         ScenarioError
             If the scenario's step, duration or sample rate is out of its range, or its coupled modes overflow.
         """
-        rates = ("sample_rate", "surface_rate", "motion_rate")
-        names = ("duration", "scheme", "step", *rates, "probes", "contact_solve", "title")
-        own = {name: getattr(self, name) for name in names}
+        own = {"duration": self.duration, "title": self.title, **vars(self.settings)}
         try:
             return simulate(self.system, **(own | kwargs))
         except NotOrdinary as error:
@@ -144,13 +137,10 @@ def scenario_of_tables(
         description=checked.description,
         system=system,
         duration=simulation.duration,
+        **{name: getattr(simulation, name) for name in NAMES if name not in BUILT},
         scheme=SCHEMES[simulation.scheme](),
-        step=simulation.step,
-        sample_rate=simulation.sample_rate,
         probes=builder.probes(system),
         contact_solve=builder.contact_solve(),
-        surface_rate=simulation.surface_rate,
-        motion_rate=simulation.motion_rate,
     )
 
 

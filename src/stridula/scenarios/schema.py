@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
 
-from ..integration import GaussSeidel
+from ..integration import CentralDifference, ExactModal, GaussSeidel
+from ..integration.settings import Settings
 from . import fields as is_
+from .derived import Keys, table_of
 from .schema_bodies import Body, Material, Section, Slider, Track
 from .schema_contacts import Connection, Contact, Friction, PairContact, Surface
 from .schema_drives import Drive
@@ -23,23 +25,28 @@ class ContactSolve(Table):
     """largest number of sweeps per step"""
 
 
-class Simulation(Table):
-    duration: is_.Time
-    """time to simulate [s]"""
-    scheme: Literal["exact modal", "central difference"] = "exact modal"
-    """exact modal or central difference"""
-    step: is_.Time | None = None
-    """time step; if left out, from the modes kept and from lumped masses on springs and contacts [s]"""
-    sample_rate: is_.Frequency = 100e3
-    """sample rate of the record [Hz]"""
-    surface_rate: is_.FrequencyOrAll | None = None
-    """rate of maps of surfaces, without records of single points [Hz], or all: each point is a contact"""
-    motion_rate: is_.Frequency | None = None
-    """sample rate of the recorded motion of bodies, for their sound; if left out, only probes record motion [Hz]"""
-    probes: list[Probe] | None = None
-    """additional quantities to record, the acceleration of the track's centre if left out"""
-    contact_solve: ContactSolve | None = None
-    """solver of several contacts"""
+OF_RUN: Keys = {
+    "surface_rate": (
+        is_.FrequencyOrAll | None,
+        None,
+        "rate of maps of surfaces, without records of single points [Hz], or all: each point is a contact",
+    ),
+    "probes": (
+        list[Probe] | None,
+        None,
+        "additional quantities to record, the acceleration of the track's centre if left out",
+    ),
+    "contact_solve": (ContactSolve | None, None, "solver of several contacts"),
+}
+if TYPE_CHECKING:
+    Simulation = Any
+else:
+    Scheme = Literal[ExactModal.name, CentralDifference.name]
+    BEFORE = {
+        "duration": (is_.Time, ..., "time to simulate [s]"),
+        "scheme": (Scheme, ExactModal.name, "exact modal or central difference"),
+    }
+    Simulation = table_of(Settings, title="Simulation", before=BEFORE, after=OF_RUN)
 
 
 class ScenarioTable(Table):

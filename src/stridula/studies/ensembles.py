@@ -179,11 +179,10 @@ def _made(
             raise ArgumentError("overrides", "be left out of an ensemble of a system", dict(values))
         return given, duration, options
     # Imported here because an ensemble of a system needs no scenarios.
-    from .sources import ARGUMENTS, made_once
+    from .sources import made_once
 
     scenario = made_once(given, values, {} if duration is None else {"duration": duration})
-    own = {name: getattr(scenario, name) for name in ARGUMENTS if name != "duration"}
-    return scenario.system, scenario.duration, own | options
+    return scenario.system, scenario.duration, vars(scenario.settings) | options
 
 
 def _checked(measures: Any) -> dict[str, Measure]:

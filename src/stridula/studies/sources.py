@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any, Protocol
 
 from ..checks import ArgumentError, brief, listed, positive, suggestion
-from ..integration import ExactModal
+from ..integration.settings import NAMES, Settings
 from ..records.provenance import toml
 from ..scenarios.errors import ScenarioError
 from ..scenarios.keys import located, with_values
@@ -25,10 +25,8 @@ from .points import Layout
 
 # Samples per second recorded unless the scenario or the study sets fewer: enough for the named measures.
 SAMPLE_RATE = 20e3
-# Default of `simulate`.
-DEFAULT_RATE = 100e3
 # Arguments of a simulation that a function may return with its system.
-ARGUMENTS = ("duration", "scheme", "step", "sample_rate", "probes", "contact_solve", "surface_rate", "motion_rate")
+ARGUMENTS = ("duration", *NAMES)
 SystemOf = Callable[..., Any]
 
 
@@ -156,25 +154,14 @@ def _made(function: SystemOf, values: Mapping[str, Any], given: Mapping[str, Any
         raise ValueError(f"{name}: {message_of(error)}") from error
     if isinstance(made, Scenario):
         return replace(made, **({"sample_rate": min(made.sample_rate, highest_rate)} | dict(given)))
-    words = {"sample_rate": min(DEFAULT_RATE, highest_rate), **_arguments(name, made), **given}
+    words = {"sample_rate": min(Settings.sample_rate, highest_rate), **_arguments(name, made), **given}
     system = made[0] if isinstance(made, tuple) else made
     if words.get("duration") is None:
         raise ArgumentError("duration", f"be given, as an argument or by {name}", got="none")
     positive("duration", words["duration"])
-    probes = words.get("probes")
-    return Scenario(
-        title=name,
-        description="",
-        system=system,
-        duration=words["duration"],
-        scheme=words.get("scheme") or ExactModal(),
-        step=words.get("step"),
-        sample_rate=words["sample_rate"],
-        probes=None if probes is None else tuple(probes),
-        contact_solve=words.get("contact_solve"),
-        surface_rate=words.get("surface_rate"),
-        motion_rate=words.get("motion_rate"),
-    )
+    if words.get("probes") is not None:
+        words["probes"] = tuple(words["probes"])
+    return Scenario(title=name, description="", system=system, **words)
 
 
 def made_once(given: Any, values: Mapping[str, Any], timing: Mapping[str, Any]) -> Scenario:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import xarray as xr
 from threadpoolctl import threadpool_limits
 
 from ..integration import simulate_many
+from ..integration.settings import Settings
 from ..records.plain import PlainRecord
 from ..scenarios.load import Scenario
 from .measures import Asked, Value, message_of
@@ -78,28 +79,23 @@ class Task:
             with failing(outcomes[number], NOT_MEASURED):
                 outcomes[number]["values"] |= self.asked.of_system(scenario.system)
         if self.asked.needs_record:
-            for numbers in _alike(scenarios, self._options):
+            for numbers in _alike(scenarios, self._settings):
                 chosen = [scenarios[number] for number in numbers]
                 self._simulate([outcomes[number] for number in numbers], chosen, workers, watch)
         return outcomes
 
-    def _options(self, scenario: Scenario) -> dict[str, Any]:
-        """Return the arguments of `simulate_many` for a scenario."""
-        return {
-            "duration": scenario.duration,
-            "scheme": scenario.scheme,
-            "step": scenario.step,
-            "sample_rate": scenario.sample_rate,
-            "probes": scenario.probes if self.probes else (),
-            "contact_solve": scenario.contact_solve,
-            "surface_rate": scenario.surface_rate,
-            "motion_rate": _motion_rate(scenario) if self.probes else None,
-        }
+    def _settings(self, scenario: Scenario) -> Settings:
+        """Return the settings of the run of a scenario, in which motion may be recorded less often."""
+        settings = scenario.settings
+        if not self.probes:
+            return replace(settings, probes=(), motion_rate=None)
+        rate = settings.motion_rate
+        return settings if rate is None else replace(settings, motion_rate=min(rate, settings.sample_rate))
 
     def _simulate(
         self, outcomes: Sequence[Outcome], scenarios: Sequence[Scenario], workers: int, watch: Callable[[], None]
     ) -> None:
-        """Run scenarios with the same options and keep the measures of their records."""
+        """Run scenarios of the same duration and settings, and keep the measures of their records."""
 
         def measured(record: xr.Dataset | PlainRecord) -> Outcome:
             found: Outcome = {"ended": record.attrs["ended"], "message": record.attrs.get("message", ""), "values": {}}
@@ -110,6 +106,7 @@ class Task:
 
         results = simulate_many(
             [scenario.system for scenario in scenarios],
+            scenarios[0].duration,
             reduce=measured,
             workers=workers,
             watchers=[lambda progress: watch()],
@@ -117,7 +114,7 @@ class Task:
             # Labelling takes longer than the named measures, which need no labels.
             labelled=bool(self.asked.functions),
             variables=self.asked.variables,
-            **self._options(scenarios[0]),
+            **vars(self._settings(scenarios[0])),
         )
         for outcome, result in zip(outcomes, results, strict=True):
             if isinstance(result, Exception):
@@ -128,17 +125,11 @@ class Task:
             outcome |= {"ended": result["ended"], "message": message, "values": values}
 
 
-def _motion_rate(scenario: Scenario) -> float | None:
-    """Return the rate of the motion of bodies in a record that may have fewer samples than the scenario's."""
-    rate = scenario.motion_rate
-    return None if rate is None else min(rate, scenario.sample_rate)
-
-
-def _alike(scenarios: dict[int, Scenario], options: Callable[[Scenario], dict[str, Any]]) -> list[list[int]]:
-    """Return groups of numbers of scenarios with equal options."""
+def _alike(scenarios: dict[int, Scenario], settings: Callable[[Scenario], Settings]) -> list[list[int]]:
+    """Return groups of numbers of scenarios of the same duration and settings."""
     groups: dict[Hashable, list[int]] = {}
     for number, scenario in scenarios.items():
-        groups.setdefault(tuple(options(scenario).values()), []).append(number)
+        groups.setdefault((scenario.duration, settings(scenario)), []).append(number)
     return list(groups.values())
 
 
