@@ -132,8 +132,10 @@ def test_a_jump_of_the_root_velocity_acts_fully_on_its_body(scheme, late):
     drive = st.ImposedVelocity(system.slider.root, 0.2, 2.0, history)
     arrays = assemble(st.System(system.contacts[0], [drive]))
     time = np.arange(200) * step
-    assert arrays.signals[-1](time, step).sum() * step == pytest.approx(0.4, rel=1e-12)
-    np.testing.assert_allclose(arrays.signals[-3](time, step)[-1], 0.2 * (3.0 * time[-1] - 2.0 * jump), rtol=1e-12)
+    assert arrays.signals.acceleration(time, step).sum() * step == pytest.approx(0.4, rel=1e-12)
+    np.testing.assert_allclose(
+        arrays.signals.displacement(time, step)[-1], 0.2 * (3.0 * time[-1] - 2.0 * jump), rtol=1e-12
+    )
 
 
 @BOTH

@@ -14,10 +14,11 @@ from .._kernels import layout as at
 from .._kernels.contact import SEPARATED
 from ..arrays import Array
 from ..checks import instance, positive
-from ..lowering import Assembly, Signal, assemble, with_travel
+from ..lowering import Assembly, assemble, with_travel
 from ..lowering.blocks import Blocks, blocks_of
 from ..lowering.carry_over import Before
 from ..lowering.schemes import ExactModal, Scheme
+from ..lowering.signals import later
 from ..records import Probe
 from ..records.state import State
 from ..records.variables import ALONG_TANGENTS
@@ -353,7 +354,7 @@ class LiveMarch:
 
     def _root_at(self, arrays: Assembly) -> float:
         """Return the distance by which an imposed velocity has moved the root of a system so far [m]."""
-        return float(arrays.signals[-3](np.array([self.time]), self.step)[0])
+        return float(arrays.signals.displacement(np.array([self.time]), self.step)[0])
 
     def _shifted(self, places: Array, position: Array, before: Array) -> Assembly:
         """Return the system whose tips are at given places now: the sum of start, displacement and imposed motion.
@@ -398,8 +399,8 @@ class LiveMarch:
             self._arrays,
             position=position,
             velocity=velocity,
-            signals=[_later(signal, now) for signal in self._arrays.signals],
-            motion=_later(self._arrays.motion, now),
+            signals=self._arrays.signals.since(now),
+            motion=later(self._arrays.motion, now),
         )
         self._put(state_at_start(arrays, self.scheme, self.step, self._blocks, GaussSeidel()), places)
 
@@ -427,7 +428,3 @@ def _opening(arrays: Assembly, places: Array, position: Array, gaps: Array) -> A
     yielded = np.linalg.solve(squared, rows.T)
     missing = gaps - np.array([one.contact.gap for one in firsts]) - rows @ position
     return np.asarray(yielded @ np.linalg.lstsq(rows @ yielded, missing)[0])
-
-
-def _later(signal: Signal, now: float) -> Signal:
-    return lambda times, step: signal(times + now, step)

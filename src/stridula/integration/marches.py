@@ -71,8 +71,9 @@ def imposed_on(arrays: Assembly, used: Sequence[int], first: int, steps: int, st
     """Return the imposed signals and motions of `steps` steps from `first` on; unused signals stay zero."""
     times = np.arange(first - 1, first + steps + 1) * step
     signals = np.zeros((steps, len(arrays.signals)))
-    for j in used:
-        signals[:, j] = arrays.signals[j](times[1:-1], step)
+    for j, signal in enumerate(arrays.signals):
+        if j in used:
+            signals[:, j] = signal(times[1:-1], step)
     angles = [one.turning.angles(times, step) for one in arrays.turning]
     return Imposed(signals, arrays.motion(times, step), np.array(angles).reshape(len(angles), steps + 1).T)
 

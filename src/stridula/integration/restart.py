@@ -131,8 +131,8 @@ def _check_state(start: xr.Dataset, arrays: Assembly, timing: Timing, probes: in
 def imposed_at(arrays: Assembly, last_step: int, step: float) -> dict[str, float]:
     """Return distance [m] and velocity [m/s] of the root by an imposed velocity after some steps."""
     time = np.array([last_step * step])
-    travel, velocity = (float(signal(time, step)[0]) for signal in arrays.signals[-3:-1])
-    return {"root_travel": travel, "root_velocity": velocity}
+    signals = {"root_travel": arrays.signals.displacement, "root_velocity": arrays.signals.velocity}
+    return {name: float(signal(time, step)[0]) for name, signal in signals.items()}
 
 
 def moved_on(

@@ -83,7 +83,7 @@ class _Start:
         self.arrays, self.stepping, self.step = arrays, Stepping(arrays, scheme), step
         self.modes, self.contacts = blocks.modes, blocks.contacts
         self.before, self.after = np.diff(arrays.motion(times, step), axis=0)
-        self.factors = np.array([signal(times[1:2], step)[0] for signal in arrays.signals[: len(arrays.loads)]])
+        self.factors = arrays.signals.factors(times[1:2], step)[:, 0]
         self.fixed = np.array([one.fixed for one in arrays.contacts])
         self.travels = self.fixed[:, 1]
         if any(one.circle is not None for one in arrays.contacts):

@@ -114,7 +114,7 @@ class Structure:
         self.mass = np.where(arrays.massless, 0.0, 1.0)
         self.rigid = _rigid_motions(self)
         self.passing = self._turn(now)
-        factors = np.array([signal(now, 1e-6)[0] for signal in arrays.signals[: len(arrays.loads)]])
+        factors = arrays.signals.factors(now, 1e-6)[:, 0]
         self.load = factors @ arrays.loads
         moved = arrays.motion(np.array([settled]), 1e-6)[0, arrays.firsts, 2]
         self.gaps = moved + [contact.gap for contact in system.contacts]

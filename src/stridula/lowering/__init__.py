@@ -3,8 +3,9 @@
 from .assembly import Assembly, assemble, with_motion_so_far, with_travel
 from .contact_rows import ContactRows
 from .coordinates import without_massless_coupling
-from .motion import Prescribed, Signal
+from .motion import Prescribed
 from .probe_rows import ProbeRows
+from .signals import Signal, Signals
 from .turning_modes import TurningModes
 
 __all__ = [
@@ -13,6 +14,7 @@ __all__ = [
     "Prescribed",
     "ProbeRows",
     "Signal",
+    "Signals",
     "TurningModes",
     "assemble",
     "with_motion_so_far",

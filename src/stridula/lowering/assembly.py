@@ -15,9 +15,10 @@ from ..system import System
 from .contact_rows import ContactRows, contact_rows
 from .coordinates import Coordinates, are_uncoupled, pairs_of
 from .loads import Load, loads_of
-from .motion import Prescribed, Signal, motion_of, prescribed_of
+from .motion import Prescribed, motion_of, prescribed_of
 from .own_laws import check_law
 from .probe_rows import ProbeRows, probe_rows
+from .signals import Signal, Signals
 from .turning_modes import TurningModes, turning_modes
 
 
@@ -42,9 +43,8 @@ class Assembly:
         tangent, of the gap; shape (times, pairs, 3).
     loads : ndarray, shape (loads, modes)
         Modal forces of the drives for a unit signal.
-    signals : list of callable
-        Functions of time and step [s]: first one for each row of `loads`, then the imposed displacement, velocity and
-        acceleration.
+    signals : Signals
+        Factors of the loads, and the motion imposed on a root.
     position, velocity : ndarray, shape (modes,)
         Modal positions and velocities at the start.
     friction_state : ndarray, shape (pairs,)
@@ -70,7 +70,7 @@ class Assembly:
     contacts: list[ContactRows]
     motion: Signal
     loads: Array
-    signals: list[Signal]
+    signals: Signals
     position: Array
     velocity: Array
     friction_state: Array
@@ -144,7 +144,7 @@ def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:
         stiffness=stiffness[:size, :size],
         dissipation=dissipation[:size, :size],
         contacts=[pair for contact in system.contacts for pair in contact_rows(contact, coordinates, turning)],
-        motion=motion_of(system, signals[-3]),
+        motion=motion_of(system, signals.displacement),
         loads=np.array([load.modal for load in loads]).reshape(len(loads), coordinates.size),
         signals=signals,
         position=position,
@@ -173,12 +173,12 @@ def _check_laws(system: System) -> None:
 
 def with_travel(arrays: Assembly, system: System, travel: float) -> Assembly:
     """Return a system whose root has already moved by a distance [m] in addition to its imposed velocity."""
-    described = arrays.signals[-3]
+    described = arrays.signals.displacement
 
     def displacement(time: Array, step: float) -> Array:
         return described(time, step) + travel
 
-    signals = [*arrays.signals[:-3], displacement, *arrays.signals[-2:]]
+    signals = replace(arrays.signals, displacement=displacement)
     return replace(arrays, signals=signals, motion=motion_of(system, displacement))
 
 

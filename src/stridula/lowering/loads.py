@@ -12,7 +12,7 @@ from ..connections import pushes
 from ..histories import Constant, History
 from ..system import System
 from .coordinates import Coordinates
-from .motion import Signal
+from .signals import Signal, Signals
 
 
 @dataclass
@@ -35,7 +35,7 @@ def _factor(history: History) -> Signal:
     return lambda time, step: history.factor(time)
 
 
-def loads_of(system: System, coordinates: Coordinates) -> tuple[list[Load], list[Signal], tuple[History, ...]]:
+def loads_of(system: System, coordinates: Coordinates) -> tuple[list[Load], Signals, tuple[History, ...]]:
     """Return the loads, merged by their histories, the signals, and the histories."""
     by_history: dict[History, Load] = {}
 
@@ -58,7 +58,7 @@ def loads_of(system: System, coordinates: Coordinates) -> tuple[list[Load], list
         add(history, *_force(point, components, coordinates))
     felt = {history: load for history, load in by_history.items() if load.modal.any() or load.root.any()}
     loads = list(felt.values())
-    signals = [_factor(history) for history in felt]
+    factors = [_factor(history) for history in felt]
 
     imposed = system.imposed_velocity
     history, velocity = (imposed.history, imposed.velocity) if imposed else (Constant(), 0.0)
@@ -75,8 +75,8 @@ def loads_of(system: System, coordinates: Coordinates) -> tuple[list[Load], list
 
     if imposed and history.settled != 0.0:
         loads.append(Load(-coordinates.translation(imposed.point.body)[0], -inertia[:, 0]))
-        signals.append(acceleration)
-    return loads, [*signals, displacement, speed, acceleration], tuple(felt)
+        factors.append(acceleration)
+    return loads, Signals(tuple(factors), displacement, speed, acceleration), tuple(felt)
 
 
 def _inertia(system: System) -> Array:

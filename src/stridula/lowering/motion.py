@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,8 +13,7 @@ from ..contact import PointContact
 from ..histories import Constant, History
 from ..system import System
 from .coordinates import pairs_of
-
-Signal = Callable[[Array, float], Array]
+from .signals import Signal
 
 
 @dataclass(frozen=True)

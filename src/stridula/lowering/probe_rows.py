@@ -24,8 +24,10 @@ class ProbeRows:
     ----------
     rows : ndarray, shape (3, modes)
         Rows on q, q' and q''.
-    direct : ndarray, shape (signals,)
-        Shares of the signals.
+    loads : ndarray, shape (loads,)
+        Shares of the factors of the loads.
+    imposed : ndarray, shape (3,)
+        Shares of the imposed displacement, velocity and acceleration.
     contact : ndarray, shape (contacts, 2)
         Shares of the normal and of the tangential force of each contact.
     is_of_body : bool
@@ -33,50 +35,55 @@ class ProbeRows:
     """
 
     rows: Array
-    direct: Array
+    loads: Array
+    imposed: Array
     contact: Array
     is_of_body: bool = False
+
+    @property
+    def direct(self) -> Array:
+        """Shares of all signals, in the order of `Signals`."""
+        return np.concatenate([self.loads, self.imposed])
 
 
 def probe_rows(probe: Probe, coordinates: Coordinates, loads: list[Load]) -> list[ProbeRows]:
     """Return the rows of a probe, several for one of all modes, checked against the system."""
     if not isinstance(probe, Reaction) and probe.body not in coordinates.system.bodies:
         raise ArgumentError("probe", "be on a body of this system", probe, got=f"one on {brief(probe.body)}")
-    nothing = np.zeros(len(loads) + 3), np.zeros((coordinates.pairs, 2))
+    blank = ProbeRows(
+        np.zeros((3, coordinates.size)), np.zeros(len(loads)), np.zeros(3), np.zeros((coordinates.pairs, 2))
+    )
     if hasattr(probe, "of_each"):
         modes = probe.of_each(coordinates.modes(probe.body).count)
-        return [replace(_rows_of(one, coordinates, loads, *nothing), is_of_body=True) for one in modes]
-    return [_rows_of(probe, coordinates, loads, *nothing)]
+        return [replace(_rows_of(one, coordinates, loads, blank), is_of_body=True) for one in modes]
+    return [_rows_of(probe, coordinates, loads, blank)]
 
 
 @singledispatch
-def _rows_of(probe: Any, coordinates: Coordinates, loads: list[Load], direct: Array, contact: Array) -> ProbeRows:
+def _rows_of(probe: Any, coordinates: Coordinates, loads: list[Load], blank: ProbeRows) -> ProbeRows:
     system, matrix = coordinates.system, np.zeros((3, coordinates.size))
     if hasattr(probe, "mode"):
         modes = coordinates.modes(probe.body).count
         if probe.mode >= modes:
             raise ArgumentError("probe", f"be of a mode below {modes}", probe, got=probe.mode)
         matrix[probe.derivative] = coordinates.blended(probe.body, np.eye(1, modes, probe.mode)[0])
-        return ProbeRows(matrix, direct, contact)
+        return replace(blank, rows=matrix)
     matrix[probe.derivative] = probe.along @ coordinates.trace(probe.point)
+    imposed = np.zeros(3)
     if system.is_held(probe.point.body):
-        direct[len(loads) + probe.derivative] = probe.along[0]
-    return ProbeRows(matrix, direct, contact)
+        imposed[probe.derivative] = probe.along[0]
+    return replace(blank, rows=matrix, imposed=imposed)
 
 
 @_rows_of.register
-def _support_rows(
-    probe: SupportForce, coordinates: Coordinates, loads: list[Load], direct: Array, contact: Array
-) -> ProbeRows:
+def _support_rows(probe: SupportForce, coordinates: Coordinates, loads: list[Load], blank: ProbeRows) -> ProbeRows:
     matrix = np.zeros((3, coordinates.size))
     matrix[0] = coordinates.blended(probe.body, probe.body.support_force(probe.end))
-    return ProbeRows(matrix, direct, contact)
+    return replace(blank, rows=matrix)
 
 
 @_rows_of.register
-def _reaction_rows(
-    probe: Reaction, coordinates: Coordinates, loads: list[Load], direct: Array, contact: Array
-) -> ProbeRows:
+def _reaction_rows(probe: Reaction, coordinates: Coordinates, loads: list[Load], blank: ProbeRows) -> ProbeRows:
     system, beam = coordinates.system, probe.body
     component = ("x", "y", "moment").index(probe.component)
     if beam != system.slider:
@@ -90,7 +97,8 @@ def _reaction_rows(
     reaction = beam.root_reaction(system.is_held(beam))
     matrix = np.zeros((3, coordinates.size))
     matrix[2] = coordinates.blended(beam, reaction.mass[component])
-    direct[: len(loads)] = [-reaction.held[component] * load.root[component] for load in loads]
+    shares = np.array([-reaction.held[component] * load.root[component] for load in loads])
+    contact = blank.contact.copy()
     for number, point in enumerate(system.contacts):
         # The force on the tip is the normal force along the normal minus the tangential force along the tangent.
         signs = np.array([-1.0, 1.0])
@@ -100,4 +108,4 @@ def _reaction_rows(
         if point.touched_point is not None and point.touched_point.body == beam:
             lever = beam.root_lever(point.touched_point.position)[component]  # type: ignore[arg-type]
             contact[number] -= reaction.held[component] * signs * (point.frame @ lever)
-    return ProbeRows(matrix, direct, contact)
+    return replace(blank, rows=matrix, loads=shares, contact=contact)

@@ -42,7 +42,7 @@ def expected_stiffness(arrays: Assembly, duration: float) -> Array:
     if all(one.yields is not None and one.yields.numbers[1] == 1.0 for one in soft):
         return np.array([one.yields.numbers[0] for one in soft if one.yields is not None])
     times = np.linspace(0.0, duration, TIMES)
-    factors = np.array([signal(times, times[1]) for signal in arrays.signals[: len(arrays.loads)]])
+    factors = arrays.signals.factors(times, times[1])
     lifts = np.gradient(arrays.motion(times, times[1])[:, :, 2], times, axis=0)
     found = []
     for number, one in enumerate(arrays.contacts):
