@@ -89,7 +89,7 @@ def test_a_moved_contact_continues_at_its_new_place(case):
 
 def broken(instrument: Instrument) -> Instrument:
     """Return an instrument whose march creates energy."""
-    instrument.live._belief.initial_energy += 1.0
+    instrument.live.now.belief.initial_energy += 1.0
     return instrument
 
 

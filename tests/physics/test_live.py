@@ -105,9 +105,9 @@ def test_an_open_contact_keeps_its_opening_and_a_closed_one_stays_closed():
     for number in range(40):
         last = {name: values[-1] for name, values in marched(live, 1, 37).items()}
         assert changed(live, "judder", slider__length=0.5354 - 1e-5 * (number % 2))
-        gap = float(live._gaps[0])
-        arrays, state = live._arrays, live._march.states[0]
-        rows = live._blocks.contacts.rows[0, 0].copy()
+        gap = float(live.now.gaps[0])
+        arrays, state = live.now.arrays, live.now.state
+        rows = live.now.blocks.contacts.rows[0, 0].copy()
         track = arrays.contacts[0].bending
         rows[slice(track[0], arrays.contacts[0].axial[1])] = -live.system.track.trace(last["contact_position"])[1]
         opening = arrays.contacts[0].contact.gap + rows @ state.modal[0]
@@ -120,7 +120,7 @@ def test_an_open_contact_keeps_its_opening_and_a_closed_one_stays_closed():
 def test_energy_balances_after_a_change():
     live, _ = played("squeal", chunks=30)
     assert changed(live, "squeal", coefficient=0.8, drives__0__transverse=4.0)
-    start = float(live._march.states[0].energies[at.STORED])
+    start = float(live.now.state.energies[at.STORED])
     energies = {name: float(values[-1]) for name, values in live.advance(4800)[0].energies.items()}
     balance = energies["kinetic_and_elastic"] - start + energies["damping_loss"]
     balance -= energies["drive_work"] + energies["contact_work"]
@@ -197,7 +197,7 @@ def test_off_the_track_it_reports_it_and_restarts():
 def test_a_contact_that_is_moved_far_keeps_its_opening(case):
     for chunks in (7, 20, 31):
         live, before = played(case, chunks=chunks)
-        place, was_open = before["contact_position"][-1], live._march.states[0].carried[0, at.STATUS] == 0.0
+        place, was_open = before["contact_position"][-1], live.now.state.carried[0, at.STATUS] == 0.0
         for moved in (-0.15, 0.3):
             assert changed(live, case, contact__at=live.system.contacts[0].at + moved)
             chunk, ended = live.advance(480)
@@ -207,12 +207,12 @@ def test_a_contact_that_is_moved_far_keeps_its_opening(case):
             if not was_open:
                 assert abs(chunk.contact["gap"][0]) < 1e-4
             place = chunk.contact["contact_position"][-1]
-            was_open = live._march.states[0].carried[0, at.STATUS] == 0.0
+            was_open = live.now.state.carried[0, at.STATUS] == 0.0
 
 
 def test_it_restarts_as_another_system_from_any_state(monkeypatch):
     live, _ = played("squeal", chunks=5)
-    monkeypatch.setattr(live._belief, "initial_energy", live._belief.initial_energy + 1.0)
+    monkeypatch.setattr(live.now.belief, "initial_energy", live.now.belief.initial_energy + 1.0)
     assert live.advance(480)[1] == "energy created"
     what = system("judder")
     live.begin(what, probes(what))
@@ -286,7 +286,7 @@ def test_a_refused_change_has_no_effect(monkeypatch):
     with pytest.raises(ValueError, match="probe must be on a body of this system"):
         live.change(system("squeal", track__length=1.3), probes(live.system))
     with monkeypatch.context() as patch:
-        patch.setattr("stridula.integration.live.state_at_start", refuse)
+        patch.setattr("stridula.integration.under_way.state_at_start", refuse)
         with pytest.raises(ValueError, match="no start"):
             changed(live, "squeal", track__length=1.3)
     now, then = marched(live, 4), marched(still, 4)
@@ -295,7 +295,7 @@ def test_a_refused_change_has_no_effect(monkeypatch):
 
 def test_created_energy_ends_it(monkeypatch):
     live, _ = played("squeal", chunks=5)
-    monkeypatch.setattr(live._belief, "initial_energy", live._belief.initial_energy + 1.0)
+    monkeypatch.setattr(live.now.belief, "initial_energy", live.now.belief.initial_energy + 1.0)
     chunk, ended = live.advance(480)
     assert ended == "energy created"
     assert len(chunk.time) == 0

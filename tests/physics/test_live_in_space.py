@@ -57,7 +57,7 @@ def test_motion_of_bodies_is_given_with_springs_on_residual_shapes():
     live.advance(8)
     span, (position, velocity) = slice(*live.spans["upper pad"]), live.motion
     assert np.array_equal(position, live.position)
-    marched = live._march.states[0].modal
+    marched = live.now.state.modal
     moved = {"displacement": position[span], "velocity": velocity[span]}
     probes = (st.Displacement(pad.at("top"), "y"), st.Velocity(pad.at("top"), "y"))
     rows = assemble(what, probes).probes

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 
 from .._kernels import layout as at
@@ -86,6 +88,10 @@ class Belief:
             self.largest_energy = largest if ended < 0 else self._largest(kept[:, first : first + completed])
             self.last_energies = kept[:, first + completed - 1].copy()
         return completed, chunk.ended if ended < 0 else ended
+
+    def copy(self) -> Belief:
+        """Return the same energies, which continue on their own."""
+        return copy(self)
 
     def _largest(self, energies: Array) -> float:
         return max(self.largest_energy, float(np.abs(energies[: at.DAMPING_LOSS + 1]).max()))

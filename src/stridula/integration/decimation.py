@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
@@ -52,3 +54,42 @@ class Decimator:
         if count == 0:
             return np.empty((count, raw.shape[1]))
         return np.asarray(sliding_window_view(joined, self.taps.size, axis=0)[:: self.ratio] @ self.taps)
+
+
+class DelayedProbes:
+    """Probes on their way through the low-pass, with as many samples as are marched.
+
+    Parameters
+    ----------
+    ratio : int
+        Steps per sample.
+    count : int
+        Number of probes.
+
+    Attributes
+    ----------
+    delay : int
+        Samples by which they are delayed.
+    """
+
+    def __init__(self, ratio: int, count: int) -> None:
+        self._low_pass, self._waiting = Decimator(ratio), np.zeros((0, count))
+        self.delay = -(-self._low_pass.lookahead // ratio)
+
+    def next(self, raw: Array, samples: int) -> Array:
+        """Take values at the next steps and return the next samples, shape (samples, probes).
+
+        The first one, repeated, or zero before the low-pass gives any.
+        """
+        waiting = np.concatenate([self._waiting, self._low_pass.feed(raw)])
+        missing = max(0, samples - len(waiting))
+        first = waiting[:1] if len(waiting) else np.zeros((1, waiting.shape[1]))
+        waiting = np.concatenate([np.repeat(first, missing, axis=0), waiting])
+        self._waiting = waiting[samples:]
+        return waiting[:samples]
+
+    def copy(self) -> DelayedProbes:
+        """Return the same probes, which continue on their own."""
+        other = copy(self)
+        other._low_pass = copy(self._low_pass)
+        return other
