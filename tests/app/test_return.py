@@ -73,6 +73,23 @@ def test_a_refused_change_leaves_the_instrument_where_it_was(monkeypatch):
     assert clocks(instrument) == [PART * k for k in range(1, 12)]
 
 
+def test_a_change_that_cannot_be_drawn_leaves_the_instrument_where_it_was(monkeypatch):
+    instrument, other = (Instrument(playable("squeal", None, {})) for _ in range(2))
+    played(instrument, 8)
+    played(other, 8)
+
+    def refused(system):
+        raise ValueError("not drawn")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("stridula.app.instrument.drawing_of", refused)
+        with pytest.raises(ValueError, match="not drawn"):
+            instrument.change(playable("squeal", None, {FRICTION: 0.5}), 1, PART + 100)
+    assert (instrument.revision, instrument.stroke, instrument.given_samples) == (0, 1, 8 * PART)
+    np.testing.assert_array_equal(played(instrument, 3), played(other, 3))
+    assert clocks(instrument) == [PART * k for k in range(1, 12)]
+
+
 def test_a_stroke_and_a_source_begin_where_the_page_wants_them():
     instrument = Instrument(playable("squeal", None, {}))
     first = played(instrument, 8)

@@ -4,30 +4,18 @@ from __future__ import annotations
 
 import time as clock
 from collections import deque
-from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterator, MutableSequence
+from dataclasses import replace
 
-import numpy as np
-
-from ..arrays import Array
 from ..checks import choice
-from ..histories import Constant
-from ..integration.live import LiveChunk, LiveMarch
-from ..integration.live import Moment as MarchMoment
+from ..integration.live import LiveMarch
 from .drawing import drawing_of
 from .last_seconds import LastSeconds
 from .parts import THINNED, Part, Stop
 from .playable import Playable
-from .sources import Heard, Source, heard_from, source_of
+from .playing import NEVER, RATE, TRUST, Moment, Playing, offered
+from .sources import Heard, Source, source_of
 
-RATE = 48_000
-# A tip that sticks under a constant force, or has left the track, begins another stroke after this time [s].
-PATIENCE = 0.5
-# A failed stroke is followed by another if at least this time has passed since the last repeated one [s].
-TRUST = 0.5
-# A jump of the sound is smoothed over this time, so that a new stroke does not click [s].
-BLEND = 0.004
 # It keeps up with the sound if it plays more than this number of seconds per second.
 LIVE = 1.05
 # Number of moments that measure the speed of playing, their samples, and the samples of short ones, which are used if a
@@ -35,22 +23,6 @@ LIVE = 1.05
 MOMENTS, MOMENT, SHORT, LONG = 5, 480, 48, 0.01
 # Number of parts to whose ends it can return.
 PARTS_KEPT = 50
-# Attributes that change while it plays.
-PLAYING = ("stroke", "ended", "played_samples", "_still", "_blend", "_last", "_since_repeat", "_must_blend")
-
-
-@dataclass(frozen=True)
-class _Moment:
-    """A moment to which an instrument can return: its attributes, its source and its march."""
-
-    attributes: dict[str, Any]
-    source: Heard
-    march: MarchMoment
-
-    @property
-    def samples(self) -> int:
-        """Samples played until then."""
-        return int(self.attributes["played_samples"])
 
 
 class Instrument:
@@ -65,24 +37,71 @@ class Instrument:
     """
 
     def __init__(self, played: Playable, source: str = "pressure") -> None:
-        self.played, self.revision = played, 0
-        self.live = LiveMarch(played.system, played.probes, played.scenario.scheme, RATE, played.scenario.step)
-        self.wanted, self.name = source, _offered(source, played)
-        self.source, self.drawing = source_of(self.name, self.live), drawing_of(played.system)
-        self.repeats, self.stroke, self.played_samples = True, 1, 0
-        self.ended = ""
-        # Longer step needed to keep up with the sound [s], None if the usual one suffices.
-        self.longer: float | None = None
-        self._still, self._blend, self._last = 0, 0.0, 0.0
-        # Number of samples since a stroke last followed another by itself.
-        self._since_repeat = round(TRUST * RATE)
-        self._must_blend = False
-        self.last_seconds = LastSeconds(RATE, played)
-        self.last_seconds.changed(0.0, played)
-        self._moments: deque[_Moment] = deque(maxlen=PARTS_KEPT)
+        live = LiveMarch(played.system, played.probes, played.scenario.scheme, RATE, played.scenario.step)
+        name, last_seconds = offered(source, played), LastSeconds(RATE, played)
+        last_seconds.changed(0.0, played)
+        self._now = Playing(played, source, name, live, source_of(name, live), last_seconds)
+        self.drawing = drawing_of(played.system)
+        self.repeats = True
+        self._moments: deque[Moment] = deque(maxlen=PARTS_KEPT)
         # The part that is played again up to the place of a change.
         self._again: list[Part | Stop] = []
         self._forget()
+
+    @property
+    def played(self) -> Playable:
+        """Scenario that is played."""
+        return self._now.played
+
+    @property
+    def revision(self) -> int:
+        """Number of the last change."""
+        return self._now.revision
+
+    @property
+    def live(self) -> LiveMarch:
+        """The march."""
+        return self._now.live
+
+    @property
+    def last_seconds(self) -> LastSeconds:
+        """The last seconds played."""
+        return self._now.last_seconds
+
+    @property
+    def name(self) -> str:
+        """Name of the source of the sound."""
+        return self._now.name
+
+    @property
+    def source(self) -> Heard:
+        """Source of the sound, as it continues."""
+        return self._now.source
+
+    @property
+    def heard_as(self) -> Source:
+        """Source of the sound, in words."""
+        return self._now.heard_as
+
+    @property
+    def stroke(self) -> int:
+        """Number of the stroke."""
+        return self._now.stroke
+
+    @property
+    def ended(self) -> str:
+        """Why the stroke ended, empty while it continues."""
+        return self._now.ended
+
+    @property
+    def longer(self) -> float | None:
+        """Longer step needed to keep up with the sound [s], None if the usual one suffices."""
+        return self._now.longer
+
+    @property
+    def played_samples(self) -> int:
+        """Samples played."""
+        return self._now.samples
 
     @property
     def given_samples(self) -> int:
@@ -92,6 +111,11 @@ class Instrument:
     def is_of(self, played: Playable) -> bool:
         """Whether a scenario is of the case or text that is played."""
         return played.origin == self.played.origin
+
+    def begins_as(self, revision: int, repeats: bool) -> None:
+        """Set the number of the change that begins it, and whether strokes are repeated."""
+        self._now, self.repeats = replace(self._now, revision=revision), repeats
+        self._forget()
 
     def change(self, played: Playable, revision: int, kept: int | None = None) -> bool:
         """Continue as another scenario and return whether the motion continues; otherwise a stroke begins.
@@ -108,79 +132,52 @@ class Instrument:
             Played samples that must stay; the change takes place after them, and later ones are forgotten. The part
             that contains the last of them is given again up to the change. After all samples if left out.
         """
-        now, again, last_seconds = self._now, self._again, self.last_seconds.copy()
-        self._go_back(kept)
-        try:
-            goes_on = self._change(played, revision)
-        except (ValueError, MemoryError):
-            self._return_to(now)
-            self._again, self.last_seconds = again, last_seconds
-            raise
-        self._forget()
-        return goes_on
-
-    def _change(self, played: Playable, revision: int) -> bool:
-        longer = self.longer if self.is_of(played) else None
-        if longer is not None and played.scenario.step is None:
-            played = played.stepped(longer)
-        drawing = self.drawing if played.system == self.drawing.system else drawing_of(played.system)
-        before = heard_from(self.live)
-        what = (played.system, played.probes, played.scenario.scheme, played.scenario.step)
-        goes_on = self.is_of(played) and not self.ended
-        if goes_on:
-            goes_on = self.live.change(*what)
-        else:
-            self.live.begin(*what)
-        name, source = _offered(self.wanted, played), self.source
-        if before != heard_from(self.live) or name != self.name:
-            source = source_of(name, self.live)
-        self._now_plays(played, revision, name, source)
-        self.longer, self.drawing = longer, drawing
-        if not goes_on:
-            self._begin_stroke()
+        now, again = self._back_at(kept, is_apart=True)
+        now, goes_on = now.changed(played, revision)
+        self._continue(now, again)
         return goes_on
 
     def begin_as(self, other: Instrument, revision: int, kept: int | None = None) -> None:
         """Begin a stroke of the scenario of another instrument that has not been played yet, as in `change`."""
-        self._go_back(kept)
-        self.live, self.longer, self.drawing = other.live, other.longer, other.drawing
-        self._now_plays(other.played, revision, other.name, other.source)
-        self._begin_stroke()
+        now, again = self._back_at(kept)
+        new = other._now
+        now = replace(now, live=new.live, source=new.source, longer=new.longer)
+        self.drawing = other.drawing
+        self._continue(now.continued_as(new.played, revision, new.name).in_a_new_stroke(), again)
+
+    def _continue(self, now: Playing, again: list[Part | Stop]) -> None:
+        """Continue from what is played now, drawn first, without a way back to before it."""
+        is_drawn = now.played.system == self.drawing.system
+        drawing = self.drawing if is_drawn else drawing_of(now.played.system)
+        self._now, self._again, self.drawing = now, again, drawing
         self._forget()
-
-    def _now_plays(self, played: Playable, revision: int, name: str, source: Any) -> None:
-        self._last *= played.sources[name].full_scale / self.heard_as.full_scale
-        self.played, self.revision, self.name, self.source = played, revision, name, source
-        self.last_seconds.goes_on_as(played)
-        self.last_seconds.changed(self.played_samples / RATE, played)
-        self._must_blend, self._still = True, 0
-        self._since_repeat = round(TRUST * RATE)
-
-    @property
-    def _now(self) -> _Moment:
-        return _Moment({name: getattr(self, name) for name in PLAYING}, self.source.copy(), self.live.moment)
-
-    def _go_back(self, kept: int | None) -> None:
-        """Return to a number of played samples, from the last moment before it, or else to the first known moment."""
-        if kept is None or kept >= self.played_samples:
-            return
-        first, *others = self._moments
-        moment = next((one for one in reversed(others) if one.samples <= kept), first)
-        if moment.samples >= self.played_samples:
-            return
-        self._return_to(moment)
-        missing = -(-(kept - self.played_samples) // THINNED) * THINNED
-        self._again = list(self._played(max(0, missing)))
-
-    def _return_to(self, moment: _Moment) -> None:
-        vars(self).update(moment.attributes)
-        self.source = moment.source.copy()
-        self.live.return_to(moment.march)
 
     def _forget(self) -> None:
         """Forget earlier moments, since the instrument must not return to before now."""
         self._moments.clear()
-        self._moments.append(self._now)
+        self._moments.append(self._now.moment)
+
+    def _back_at(self, kept: int | None, *, is_apart: bool = False) -> tuple[Playing, list[Part | Stop]]:
+        """Return what was played after a number of samples, and the parts to give again up to there.
+
+        Found from the last moment before it, or else from the first known moment; if `is_apart`, what is played now
+        stays as it is.
+        """
+        now, again = self._now, self._again
+        if kept is None or kept >= now.samples:
+            return now, again
+        first, *others = self._moments
+        moment = next((one for one in reversed(others) if one.samples <= kept), first)
+        if moment.samples >= now.samples:
+            return now, again
+        then = replace(moment.playing, source=moment.playing.source.copy())
+        if is_apart:
+            then = replace(then, live=now.live.at(moment.march), last_seconds=now.last_seconds.copy())
+        else:
+            then.live.return_to(moment.march)
+        missing = max(0, -(-(kept - then.samples) // THINNED) * THINNED)
+        found = [*self._strokes(then, missing, [])]
+        return (found[-1][0] if found else then), [one for _, one in found if one is not None]
 
     def listen_to(self, name: str, kept: int | None = None) -> None:
         """Change the source of the sound, with a smooth transition at the same level, as soon as in `change`.
@@ -191,16 +188,8 @@ class Instrument:
             If there is no source of this name.
         """
         choice("source", name, tuple(self.played.sources))
-        self._go_back(kept)
-        self._last *= self.played.sources[name].full_scale / self.heard_as.full_scale
-        self.wanted = self.name = name
-        self.source, self._must_blend = source_of(name, self.live), True
-        self._forget()
-
-    @property
-    def heard_as(self) -> Source:
-        """Source of the sound."""
-        return self.played.sources[self.name]
+        now, again = self._back_at(kept)
+        self._continue(now.listening_to(name), again)
 
     def keep_up(self) -> float:
         """Return the seconds played per second, from the start, doubling the steps if that keeps up with the sound."""
@@ -219,7 +208,8 @@ class Instrument:
             self.change(usual, self.revision)
             self._rewind()
             return speed
-        self.longer = step
+        self._now = replace(self._now, longer=step)
+        self._forget()
         return longer
 
     def speed(self) -> float:
@@ -247,97 +237,49 @@ class Instrument:
 
     def restart(self, kept: int | None = None) -> None:
         """Begin a stroke from the initial state, as soon as in `change`."""
-        self._go_back(kept)
-        self._restart()
-        self._forget()
-
-    def _restart(self) -> None:
-        self.live.restart()
-        self._begin_stroke()
+        now, again = self._back_at(kept)
+        self._continue(now.restarted(), again)
 
     def repeat(self, on: bool) -> None:
         """Repeat strokes or not; if on, an ended stroke or one at rest begins again."""
         self.repeats = on
         if on and self.ended:
             self.restart()
-        self._still = max(self._still, 0)
+        self._now = replace(self._now, still=max(self._now.still, 0))
 
     def play(self, samples: int) -> Iterator[Part | Stop]:
         """Yield the next parts and the ends of strokes; nothing after a stroke that is not repeated."""
         again, self._again = self._again, []
         yield from again
-        yield from self._played(samples)
+        for now, one in self._strokes(self._now, samples, self._moments):
+            self._now = now
+            if one is not None:
+                yield one
 
-    def _played(self, samples: int) -> Iterator[Part | Stop]:
-        while samples and not self.ended:
-            chunk, ended = self.live.advance(samples)
+    def _strokes(
+        self, now: Playing, samples: int, moments: MutableSequence[Moment]
+    ) -> Iterator[tuple[Playing, Part | Stop | None]]:
+        """Yield what is played after each part and each end of a stroke, and the part or the end; keep the moments."""
+        while samples and not now.ended:
+            chunk, ended = now.live.advance(samples)
             if len(chunk.time):
-                yield self._part(chunk)
+                now, part = now.after(chunk, self.drawing)
+                yield now, part
             samples -= len(chunk.time)
-            self._since_repeat += len(chunk.time)
-            self._moments.append(self._now)
-            why = ended if ended != "finished" else self._at_rest(chunk)
+            moments.append(now.moment)
+            why, now = (ended, now) if ended != "finished" else now.at_rest(chunk)
             if not why:
+                yield now, None
                 continue
             # A stroke that ends at once would be repeated endlessly.
             needed = 1 if ended in ("finished", "off the track") else TRUST * RATE
-            goes_on = self.repeats and self._since_repeat >= needed
+            goes_on = self.repeats and now.since_repeat >= needed
             if goes_on:
-                self._since_repeat = 0
-                self._restart()
+                now = replace(now, since_repeat=0).restarted()
             elif ended == "finished":
-                self._still = -(2**62)
+                now = replace(now, still=NEVER)
+                yield now, None
                 continue
             else:
-                self.ended = why
-            yield Stop(why, goes_on)
-
-    def _begin_stroke(self) -> None:
-        self.stroke, self.ended = self.stroke + 1, ""
-        self.source.begin()
-        self._must_blend, self._still = True, 0
-
-    def _at_rest(self, chunk: LiveChunk) -> str:
-        """Return why this stroke remains at rest, or an empty text."""
-        drives = self.live.system.drives
-        is_constant = all(getattr(drive, "history", Constant()).settled == 0.0 for drive in drives)
-        sticks = chunk.status_shares[..., 1].min() == 1.0 and not self._is_drawn_along()
-        is_still = is_constant and (sticks or chunk.status_shares[..., 0].min() == 1.0)
-        self._still = self._still + len(chunk.time) if is_still else min(self._still, 0)
-        if self._still < PATIENCE * RATE:
-            return ""
-        return "at rest" if sticks else "lifted off"
-
-    def _is_drawn_along(self) -> bool:
-        """Return whether a motion is prescribed."""
-        system = self.live.system
-        rigid = [one.rigid_track for one in system.contacts if one.rigid_track is not None]
-        moves = [*(not track.is_still for track in rigid), *(any(one.surface_velocities) for one in system.contacts)]
-        return system.imposed_velocity is not None or any(moves)
-
-    def _part(self, chunk: LiveChunk) -> Part:
-        self.played_samples += len(chunk.time)
-        sound = self._blended(self.source.heard(chunk))
-        part = Part(
-            self.revision, self.played_samples / RATE, sound, chunk, self.drawing.shapes(self.live, chunk), self.stroke
-        )
-        self.last_seconds.keep(part, self.heard_as)
-        return part
-
-    def _blended(self, sound: Array) -> Array:
-        """Return the sound with a smooth transition after a jump."""
-        if self._must_blend:
-            self._blend, self._must_blend = self._last - float(sound[0]), False
-        if self._blend:
-            fade = np.exp(-np.arange(len(sound) + 1) / (BLEND * RATE))
-            sound = sound + self._blend * fade[:-1]
-            self._blend *= fade[-1]
-            if abs(self._blend) < 1e-9 * (1.0 + abs(self._last)):
-                self._blend = 0.0
-        self._last = float(sound[-1])
-        return sound
-
-
-def _offered(wanted: str, played: Playable) -> str:
-    """Return the requested source if the scenario has it, else its first source."""
-    return wanted if wanted in played.sources else next(iter(played.sources))
+                now = replace(now, ended=why)
+            yield now, Stop(why, goes_on)

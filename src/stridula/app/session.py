@@ -261,7 +261,7 @@ class Session:
             (begun, speed), goes_on = other, False
             if self.instrument is None:
                 self.instrument = begun
-                begun.revision, begun.repeats = revision, self.repeats
+                begun.begins_as(revision, self.repeats)
             else:
                 self.instrument.begin_as(begun, revision, kept)
         if not goes_on:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -161,6 +162,13 @@ class LiveMarch:
         """Return to an earlier moment; the march continues from it to the last bit as it did then."""
         self.now = moment.under_way.apart()
         self.now.march.put([moment.state])
+
+    def at(self, moment: Moment) -> LiveMarch:
+        """Return a march of its own that continues from an earlier moment, while this one stays where it is."""
+        other = copy(self)
+        other.now = replace(moment.under_way.apart(), march=moment.under_way.march.copy())
+        other.now.march.put([moment.state])
+        return other
 
     def restart(self) -> None:
         """Return to the start."""
