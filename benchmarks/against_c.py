@@ -24,7 +24,7 @@ import numpy as np
 import stridula as st
 from ratios import WARM_UP, Ratio, must_agree, show, sized
 from stridula._kernels import layout as at
-from stridula.integration.marches import Imposed, March
+from stridula.integration.marches import Excitation, March
 from stridula.integration.start import state_at_start
 from stridula.lowering import assemble
 from stridula.lowering.blocks import blocks_of
@@ -59,7 +59,7 @@ class Pair:
     def ours(self) -> tuple[Callable[[], None], Callable[[], Result]]:
         """Return the march of the package, and a function that returns its results."""
         march = March([self.blocks], [deepcopy(self.state)], self.step, RATIO)
-        imposed = Imposed(np.array([[1.0, 0.0, 0.0, 0.0]]), np.zeros((1, 1, at.MOTIONS)), np.zeros((1, 0)))
+        imposed = Excitation(np.array([[1.0, 0.0, 0.0, 0.0]]), np.zeros((1, 1, at.MOTIONS)), np.zeros((1, 0)))
         chunks = []
 
         def run() -> None:

@@ -41,7 +41,7 @@ from stridula._kernels.parts import Imposed as ImposedOnRuns
 from stridula._kernels.parts import Parts, Records
 from stridula._kernels.vectors import LANES
 from stridula.integration.cuda_march import CudaMarch, require_cuda
-from stridula.integration.marches import Imposed, March, imposed_on
+from stridula.integration.marches import Excitation, March, imposed_on
 from stridula.integration.start import state_at_start
 from stridula.lowering import assemble
 from stridula.lowering.blocks import Blocks, blocks_of
@@ -97,7 +97,7 @@ def cases(frictions: Iterable[float], angles: Iterable[float], step: float) -> I
         blocks = blocks_of(arrays, scheme, step)
         state = state_at_start(arrays, scheme, step, blocks, st.GaussSeidel())
         whole = imposed_on(arrays, blocks.used, 0, 1, step)
-        imposed = Imposed(whole.signals[:1], whole.motion[:1], whole.angles[:1])
+        imposed = Excitation(whole.signals[:1], whole.motion[:1], whole.angles[:1])
         for friction in frictions:
             laws = blocks.contacts.laws.copy()
             laws[0, 0] = friction

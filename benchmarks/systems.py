@@ -13,7 +13,7 @@ import xarray as xr
 import stridula as st
 from ratios import must_agree, sized
 from stridula._kernels import layout as at
-from stridula.integration.marches import Imposed, March, imposed_on
+from stridula.integration.marches import Excitation, March, imposed_on
 from stridula.integration.start import state_at_start
 from stridula.lowering import assemble
 from stridula.lowering.blocks import Blocks, blocks_of
@@ -148,13 +148,13 @@ class Case:
         The system in the arrays of the march.
     state : State
         Initial state.
-    imposed : Imposed
+    imposed : Excitation
         Signals and motion: one row where they are constant and the march accepts one.
     """
 
     blocks: Blocks
     state: State
-    imposed: Imposed
+    imposed: Excitation
 
 
 def limit_of(system: st.System) -> float:
@@ -168,7 +168,7 @@ def case_of(system: st.System, step: float, steps: int = 1) -> Case:
     arrays = assemble(system, [])
     blocks = blocks_of(arrays, SCHEME, step)
     whole = imposed_on(arrays, blocks.used, 0, steps, step)
-    imposed = Imposed(whole.signals, whole.motion[:1], whole.angles[:1]) if steps == 1 else whole
+    imposed = Excitation(whole.signals, whole.motion[:1], whole.angles[:1]) if steps == 1 else whole
     return Case(blocks, state_at_start(arrays, SCHEME, step, blocks, st.GaussSeidel()), imposed)
 
 

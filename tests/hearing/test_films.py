@@ -11,11 +11,12 @@ from PIL import Image
 
 import stridula as st
 from stridula import plot
+from stridula.integration.settings import Given
 from stridula.lines import lines_of
 from stridula.plot import reels
 from stridula.plot.colours import STATUS_COLOURS
 from stridula.plot.films import Picture
-from stridula.plot.motion import Timing, motion_of
+from stridula.plot.motion import motion_of
 from stridula.plot.plane_motion import plane_motion
 from stridula.records.variables import STATUS_WORDS
 
@@ -30,7 +31,7 @@ def pair():
 
 def filmed(system, start, duration, scheme=None):
     """Return the motion of a system in the plane over a window."""
-    return plane_motion(system, motion_of(system, (start, duration), FRAME, Timing(scheme)))
+    return plane_motion(system, motion_of(system, (start, duration), FRAME, Given(scheme=scheme)))
 
 
 def pair_of(motion, exaggeration=1.0):

@@ -14,9 +14,10 @@ import stridula as st
 from stridula import plot
 from stridula.bodies.drawn_surfaces import drawn_of, drawn_table
 from stridula.cards import VIEW
+from stridula.integration.settings import Given
 from stridula.plot import mode_films, space_films
 from stridula.plot.colours import STATUS_COLOURS
-from stridula.plot.motion import ModalMotion, Timing, motion_of
+from stridula.plot.motion import ModalMotion, motion_of
 from stridula.plot.moved_bodies import surfaces_of
 from stridula.plot.scenes import Scene
 from stridula.plot.space_films import SpacePicture
@@ -37,7 +38,7 @@ def rig():
 @pytest.fixture(scope="module")
 def motion(rig):
     """Return its motion over 2 ms that hold every status."""
-    return motion_of(rig.system, (0.018, 0.002), FRAME, Timing(rig.scheme, rig.step), velocities=True)
+    return motion_of(rig.system, (0.018, 0.002), FRAME, Given(scheme=rig.scheme, step=rig.step), velocities=True)
 
 
 def block(**options):

@@ -11,9 +11,10 @@ from matplotlib.figure import Figure
 import stridula as st
 from stridula import plot
 from stridula.cards import VIEW
+from stridula.integration.settings import Given
 from stridula.plot import space_films
 from stridula.plot.mode_films import FRAMES
-from stridula.plot.motion import Timing, motion_of
+from stridula.plot.motion import motion_of
 from stridula.plot.scenes import Scene
 from stridula.records.variables import STATUS_WORDS
 
@@ -68,7 +69,7 @@ def test_at_rest_bodies_and_contacts_are_where_they_are(rig):
 
 def test_motion_colours_and_points_are_those_of_the_film(rig):
     plotter = plot.view(rig.system, START, DURATION, scheme=rig.scheme, step=rig.step)
-    motion = motion_of(rig.system, (START, DURATION), FRAME, Timing(rig.scheme, rig.step), velocities=True)
+    motion = motion_of(rig.system, (START, DURATION), FRAME, Given(scheme=rig.scheme, step=rig.step), velocities=True)
     times = space_films.exaggeration_of(rig.system, motion.modes, None)
     scene = Scene(Figure(), (0.0, 0.0, 1.0, 1.0), rig.system, motion.modes, times, VIEW)
     title, last = "velocity outwards [m/s]", motion.modes.frames - 1

@@ -14,8 +14,7 @@ import numpy as np
 from .._kernels import layout as at
 from .._kernels.block_rows import CONTACTS
 from .._kernels.march import march
-from .._kernels.parts import Carried, Contacts, Modes, Parts, Paths, Probes, Records, Timing, Turning
-from .._kernels.parts import Imposed as ImposedOnRuns
+from .._kernels.parts import Carried, Contacts, Imposed, Modes, Parts, Paths, Probes, Records, Timing, Turning
 from .._kernels.turning import OF_CONTACT
 from .._kernels.vectors import LANES
 from ..arrays import Array
@@ -49,7 +48,7 @@ if not PLAIN:
 
 
 @dataclass(frozen=True)
-class Imposed:
+class Excitation:
     """Imposed signals and motions of a chunk of steps, in one row each if nothing varies.
 
     Attributes
@@ -67,7 +66,7 @@ class Imposed:
     angles: Array
 
 
-def imposed_on(arrays: Assembly, used: Sequence[int], first: int, steps: int, step: float) -> Imposed:
+def imposed_on(arrays: Assembly, used: Sequence[int], first: int, steps: int, step: float) -> Excitation:
     """Return the imposed signals and motions of `steps` steps from `first` on; unused signals stay zero."""
     times = np.arange(first - 1, first + steps + 1) * step
     signals = np.zeros((steps, len(arrays.signals)))
@@ -75,7 +74,7 @@ def imposed_on(arrays: Assembly, used: Sequence[int], first: int, steps: int, st
         if j in used:
             signals[:, j] = signal(times[1:-1], step)
     angles = [one.turning.angles(times, step) for one in arrays.turning]
-    return Imposed(signals, arrays.motion(times, step), np.array(angles).reshape(len(angles), steps + 1).T)
+    return Excitation(signals, arrays.motion(times, step), np.array(angles).reshape(len(angles), steps + 1).T)
 
 
 class Impositions:
@@ -95,14 +94,14 @@ class Impositions:
         self.arrays, self.used, self.step = arrays, blocks.used, step
         self.is_steady = arrays.prescribed.is_steady
 
-    def on(self, first: int, steps: int) -> Imposed:
+    def on(self, first: int, steps: int) -> Excitation:
         """Return the imposed signals and motions of `steps` steps from `first` on, in one row if nothing varies."""
         return self._steady if self.is_steady else imposed_on(self.arrays, self.used, first, steps, self.step)
 
     @cached_property
-    def _steady(self) -> Imposed:
+    def _steady(self) -> Excitation:
         imposed = imposed_on(self.arrays, self.used, 0, 1, self.step)
-        return Imposed(imposed.signals, imposed.motion[:1], imposed.angles[:1])
+        return Excitation(imposed.signals, imposed.motion[:1], imposed.angles[:1])
 
 
 @dataclass(frozen=True)
@@ -290,7 +289,7 @@ class March:
         energies, record, raw, stops = self.room
         return energies[:samples], record[:samples], raw[: samples * self.ratio], stops
 
-    def advance(self, imposed: Sequence[Imposed], samples: int) -> list[Chunk]:
+    def advance(self, imposed: Sequence[Excitation], samples: int) -> list[Chunk]:
         """March `samples` samples and return the record of each run, to be read before the next call."""
         steps, runs = samples * self.ratio, self.runs
         imposed = [*imposed, *[imposed[-1]] * (runs - self.given)]
@@ -304,7 +303,7 @@ class March:
         angles = _each(lambda one: one.angles, imposed)
         if all((one == one[0]).all() for one in angles):
             angles = [one[:1] for one in angles]
-        given = ImposedOnRuns(_beside(signals), _beside(motions), _beside(angles))
+        given = Imposed(_beside(signals), _beside(motions), _beside(angles))
         self._march(given, Records(energies, record, raw, stops))
         energies, record = energies.reshape(samples, -1, runs), record.reshape(samples, self.contact_count, -1, runs)
         raw = raw.reshape(steps, -1, runs)
@@ -313,7 +312,7 @@ class March:
             for run in range(self.given)
         ]
 
-    def _march(self, imposed: ImposedOnRuns, records: Records) -> None:
+    def _march(self, imposed: Imposed, records: Records) -> None:
         """March through a chunk and fill `records`."""
         parts = self.modes, self.paths, self.contacts, self.turning, self.carried, imposed, self.probes, records
         for place in self.places:
@@ -334,7 +333,7 @@ def _beside(imposed: Sequence[Array]) -> Array:
     return np.ascontiguousarray(first) if len(imposed) == 1 else np.repeat(first, len(imposed), axis=1)
 
 
-def _each(change: Callable[[Imposed], Array], imposed: Sequence[Imposed]) -> list[Array]:
+def _each(change: Callable[[Excitation], Array], imposed: Sequence[Excitation]) -> list[Array]:
     """Return the results of a function for each, computed once for an object shared by several runs."""
     made = {id(one): change(one) for one in {id(one): one for one in imposed}.values()}
     return [made[id(one)] for one in imposed]

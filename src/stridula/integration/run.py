@@ -26,7 +26,7 @@ from ..version import __version__
 from .belief import Belief
 from .contact_solve import GaussSeidel
 from .equilibrium_start import in_equilibrium, note_of_start
-from .marches import Chunk, Imposed, Impositions
+from .marches import Chunk, Excitation, Impositions
 from .probe_records import ProbeRecords
 from .restart import imposed_at, motion_about, moved_on, state_of
 from .settings import Settings
@@ -123,7 +123,7 @@ class Run:
         """Number of samples beyond the end that the low-passes of the probes need."""
         return -(-self.probed.ahead(self.done) // self.timing.ratio) if self.ended == at.FINISHED else 0
 
-    def imposed(self, first_sample: int, samples: int) -> Imposed:
+    def imposed(self, first_sample: int, samples: int) -> Excitation:
         """Return the imposed signals and motions of the steps of some samples."""
         ratio = self.timing.ratio
         return self.impositions.on(self.first_step + first_sample * ratio, samples * ratio)

@@ -8,7 +8,7 @@ from collections.abc import Hashable, Sequence
 from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
 from .interrupts import DeferredInterrupt
-from .marches import Imposed, March, compilations
+from .marches import Excitation, March, compilations
 from .run import Run
 from .watchers import Progress, Watcher
 
@@ -58,10 +58,10 @@ def _compiled(runs: Sequence[Run], march: March) -> float:
     return clock.perf_counter() - began if compilations() > before else 0.0
 
 
-def _imposed(runs: Sequence[Run], first_sample: int, samples: int) -> list[Imposed]:
+def _imposed(runs: Sequence[Run], first_sample: int, samples: int) -> list[Excitation]:
     """Return the imposed signals and motions of each run, the same object for runs that share them."""
     keys: list[Hashable] = [(run.arrays.prescribed, run.blocks.used, run.first_step) for run in runs]
-    found: dict[Hashable, Imposed] = {}
+    found: dict[Hashable, Excitation] = {}
     for run, key in zip(runs, keys, strict=True):
         if key not in found:
             found[key] = run.imposed(first_sample, samples)

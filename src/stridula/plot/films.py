@@ -10,11 +10,12 @@ from matplotlib.figure import Figure
 
 from ..cards import VIEW
 from ..checks import instance, positive
+from ..integration.settings import Given
 from ..lines import check_in_plane
 from ..lowering.schemes import Scheme
 from ..records.variables import STATUS_WORDS
 from ..system import System
-from .motion import SAMPLE_RATE, Timing, motion_of
+from .motion import SAMPLE_RATE, motion_of
 from .moved_bodies import has_surfaces
 from .plane_motion import PlaneMotion, plane_motion
 from .plane_scenes import PlaneScene
@@ -108,8 +109,8 @@ def animate(
     if not in_space:
         check_in_plane(system)
     writer = writer_for(out)
-    frame, timing = 1.0 / (FRAMES_PER_SECOND * slowdown), Timing(scheme, step, sample_rate)
-    motion = motion_of(system, (start, duration), frame, timing, velocities=in_space)
+    frame, given = 1.0 / (FRAMES_PER_SECOND * slowdown), Given(scheme=scheme, step=step, sample_rate=sample_rate)
+    motion = motion_of(system, (start, duration), frame, given, velocities=in_space)
     interval = float(motion.run.attrs["sample_interval"])
     slowed = 1.0 / (FRAMES_PER_SECOND * interval)
     picture: Drawn

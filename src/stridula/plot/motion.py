@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,32 +12,14 @@ import xarray as xr
 from ..arrays import Array
 from ..checks import ArgumentError, at_most, non_negative, positive
 from ..integration import simulate
+from ..integration.settings import Given, Settings, settings_of
 from ..integration.timing import choose_timing
 from ..lowering import assemble
-from ..lowering.schemes import ExactModal, Scheme
 from ..records import Displacement, ModalDisplacement, ModalVelocity, Probe
 from ..system import System
 from .reels import FEWEST_FRAMES, check_frames
 
-SAMPLE_RATE = 100e3
-
-
-class Timing(NamedTuple):
-    """Time integration of a run that is drawn; with scheme and step of a record, the run equals it to the last bit.
-
-    Attributes
-    ----------
-    scheme : ExactModal or CentralDifference or None
-        Time scheme; if None, the exact modal one.
-    step : float or None
-        Time step [s]; if None, that of `simulate` at the sample rate.
-    sample_rate : float
-        Sample rate [Hz]; no effect with a given step.
-    """
-
-    scheme: Scheme | None = None
-    step: float | None = None
-    sample_rate: float = SAMPLE_RATE
+SAMPLE_RATE = Settings.sample_rate
 
 
 @dataclass(frozen=True)
@@ -79,7 +61,7 @@ class Motion:
 
 
 def motion_of(
-    system: System, window: tuple[float, float], frame: float, timing: Timing, velocities: bool = False
+    system: System, window: tuple[float, float], frame: float, given: Given, velocities: bool = False
 ) -> Motion:
     """Simulate a system up to the end of a window, with probes of all modes of its bodies.
 
@@ -91,8 +73,9 @@ def motion_of(
         Start and duration [s].
     frame : float
         Time between frames [s]; the nearest whole number of steps is taken.
-    timing : Timing
-        Scheme and step.
+    given : Given
+        Scheme, step and sample rate; with scheme and step of a record, the run equals it to the last bit. Without a
+        step, that of `simulate` at the sample rate.
     velocities : bool, optional
         Whether to probe the velocities of the modes as well.
 
@@ -106,7 +89,7 @@ def motion_of(
     probes: list[Probe] = [kind(body, k) for kind in kinds for body, n in counts.items() for k in range(n)]
     imposed = system.imposed_velocity
     probes += [] if imposed is None else [Displacement(imposed.point, "x")]
-    run = _simulated(system, window, frame, timing, probes)
+    run = _simulated(system, window, frame, given, probes)
     ends = np.cumsum(list(counts.values()))[:-1]
     names = [system.body_name(body) for body in counts]
     moved: list[dict[str, Array]] = [
@@ -118,18 +101,19 @@ def motion_of(
 
 
 def _simulated(
-    system: System, window: tuple[float, float], frame: float, timing: Timing, probes: list[Probe]
+    system: System, window: tuple[float, float], frame: float, given: Given, probes: list[Probe]
 ) -> xr.Dataset:
     """Simulate a system up to the end of a window and return the record over it, a sample for each frame."""
     start, duration = window
     positive("duration", duration)
     check_frames(duration, frame)
     end = non_negative("start", start) + duration
-    scheme: Scheme = ExactModal() if timing.scheme is None else timing.scheme
-    step = timing.step
+    asked = settings_of("simulate", given)
+    step = asked.step
     if step is None:
-        step = choose_timing(assemble(system, ()), scheme, end, None, timing.sample_rate).step
-    run = simulate(system, end, scheme=scheme, step=step, sample_rate=1.0 / frame, probes=probes, surface_rate="all")
+        step = choose_timing(assemble(system, ()), asked.scheme, end, None, asked.sample_rate).step
+    of_frames = Given(scheme=asked.scheme, step=step, sample_rate=1.0 / frame, probes=probes, surface_rate="all")
+    run = simulate(system, end, **of_frames)
     shown = run.isel(time=run["time"].values > start + 0.5 * float(run.attrs["sample_interval"]))
     if shown.sizes["time"] < FEWEST_FRAMES:
         ended = f"{run.attrs['ended']} at {at_most(float(run['time'][-1]))} s"

@@ -7,9 +7,10 @@ from matplotlib.figure import Figure
 
 from ..cards import VIEW
 from ..checks import positive
+from ..integration.settings import Given
 from ..lowering.schemes import Scheme
 from ..system import System
-from .motion import SAMPLE_RATE, ModalMotion, Motion, Timing, motion_of
+from .motion import SAMPLE_RATE, ModalMotion, Motion, motion_of
 from .moved_bodies import check_surfaces, extent_of, largest_departure, surfaces_of
 from .reels import DPI, HEIGHT, WIDTH, rounded
 from .scenes import Scene, checked_view
@@ -75,7 +76,8 @@ def bodies(
     duration = min(positive("time", time), BEFORE)
     frame = min(FRAME, 0.5 * duration)
     start = max(time - duration, 0.0)
-    motion = motion_of(system, (start, duration), frame, Timing(scheme, step, sample_rate), velocities=True)
+    given = Given(scheme=scheme, step=step, sample_rate=sample_rate)
+    motion = motion_of(system, (start, duration), frame, given, velocities=True)
     times = exaggeration_of(system, motion.modes, exaggeration)
     picture = SpacePicture(system, motion, times, None, title, seen)
     picture.show(picture.frames - 1)

@@ -12,11 +12,12 @@ from ..arrays import Array
 from ..cards import VIEW, eye_of
 from ..checks import STATUS_WORDS, positive
 from ..extras import named_extras
+from ..integration.settings import Given
 from ..lowering.schemes import Scheme
 from ..system import System
 from .colours import STATUS_COLOURS
 from .mode_films import motion_of_mode, over_largest, shapes_of_mode
-from .motion import SAMPLE_RATE, Timing, motion_of
+from .motion import SAMPLE_RATE, motion_of
 from .moved_bodies import MovedBodies, ShownBody, check_surfaces, places_of_contacts, surfaces_of
 from .reels import FRAMES_PER_SECOND
 from .scenes import VELOCITIES, checked_view
@@ -92,7 +93,8 @@ def view(
         _show_points(plotter, "contacts", np.array([one.at_rest for one in placed]).reshape(-1, 3), "black")
         return _looked_at(plotter, seen)
     frame = 1.0 / (FRAMES_PER_SECOND * positive("slowdown", slowdown))
-    motion = motion_of(system, (start, duration), frame, Timing(scheme, step, sample_rate), velocities=True)
+    given = Given(scheme=scheme, step=step, sample_rate=sample_rate)
+    motion = motion_of(system, (start, duration), frame, given, velocities=True)
     times = exaggeration_of(system, motion.modes, exaggeration)
     moved = MovedBodies(system, motion.modes, times, np.zeros(3))
     time = 1e3 * motion.run["time"].values
