@@ -148,12 +148,10 @@ class Momentum(_Probe):
 Probe = (
 '''
 ROWS = """@_rows_of.register
-def _momentum_rows(
-    probe: Momentum, coordinates: Coordinates, loads: list[Load], direct: Array, contact: Array
-) -> ProbeRows:
+def _momentum_rows(probe: Momentum, coordinates: Coordinates, loads: list[Load], blank: ProbeRows) -> ProbeRows:
     matrix = np.zeros((3, coordinates.size))
     matrix[1] = coordinates.translation(probe.body)["xyz".index(probe.direction)]
-    return ProbeRows(matrix, direct, contact)
+    return replace(blank, rows=matrix)
 
 
 @_rows_of.register

@@ -162,9 +162,6 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
     share = np.array([kinetic[first:end].sum(axis=0) for first, end in spans.values()]).T
     unstable = values.real > round_off(structure)
     limit, beyond = _beyond_cutoff(system, values.imag / (2.0 * np.pi), share)
-    body = np.empty(structure.mode_count, dtype=object)
-    for name, (first, end) in spans.items():
-        body[first:end] = name
     ratio = np.where(size > 0.0, -values.real / np.where(size > 0.0, size, 1.0), 0.0)
     data: dict[str, Any] = {
         "frequency": ("mode", values.imag / (2.0 * np.pi), described("Hz", "frequency of vibration")),
@@ -183,7 +180,7 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
     coordinates = {
         "mode": np.arange(values.size),
         "body": list(spans),
-        "coordinate_body": ("coordinate", body.astype(str)),
+        "coordinate_body": ("coordinate", _bodies_of_coordinates(structure)),
         "part": ["real", "imaginary"],
         "direction": ["x", "y", "z"] if system.is_spatial else ["x", "y"],
     }
@@ -214,6 +211,14 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
         )
     attributes["notes"] = "; ".join(notes)
     return xr.Dataset(data, coordinates, attributes)
+
+
+def _bodies_of_coordinates(structure: Structure) -> Array:
+    """Return the name of the body of each coordinate."""
+    body = np.empty(structure.mode_count, dtype=object)
+    for name, (first, end) in structure.arrays.spans.items():
+        body[first:end] = name
+    return body.astype(str)
 
 
 def _beyond_cutoff(system: System, frequency: Array, share: Array) -> tuple[float, Array]:

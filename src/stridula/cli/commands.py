@@ -214,7 +214,17 @@ def sound(
     from .sounding import sound_of_record
 
     figures = {"--plot": plot, "--bands": bands}
-    sound_of_record(record, listener or [], body or [], wav, figures, sample_rate, full_scale, subtype, baffled)
+    sound_of_record(
+        record,
+        listener or [],
+        body or [],
+        wav=wav,
+        figures=figures,
+        sample_rate=sample_rate,
+        full_scale=full_scale,
+        subtype=subtype,
+        baffled=baffled,
+    )
 
 
 @app.command()
@@ -242,7 +252,19 @@ def sweep(
 
     chosen = points_of(vary or [], sample, seed, points, yes)
     overrides = _pairs(set_ or [])
-    print(sweep_scenario(name, chosen, measure, overrides, duration, out, plot, workers, scheduler))
+    print(
+        sweep_scenario(
+            name,
+            chosen,
+            measure,
+            overrides,
+            duration=duration,
+            out=out,
+            plot=plot,
+            workers=workers,
+            scheduler=scheduler,
+        )
+    )
 
 
 @app.command()

@@ -33,6 +33,7 @@ def sound_of_record(
     name: str,
     listeners: Sequence[str],
     bodies: Sequence[str],
+    *,
     wav: str | None,
     figures: dict[str, str | None],
     sample_rate: str,

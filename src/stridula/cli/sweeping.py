@@ -29,6 +29,7 @@ def sweep_scenario(
     points: Points,
     measures: Sequence[str],
     overrides: dict[str, Any],
+    *,
     duration: str | None,
     out: str,
     plot: str | None,

@@ -199,7 +199,17 @@ def simulate_many(
     with time_shown(progress, title or f"simulate {counted(len(systems), 'system')}") as more:
         arrays, preparation = _arrays(systems, preparation, results)
         told = [*watchers, *more]
-        together = _Together(preparation, arrays, record, reduce, told, DEVICES[device], title, results, wanted)
+        together = _Together(
+            preparation,
+            arrays,
+            record=record,
+            reduce=reduce,
+            watchers=told,
+            side_by_side=DEVICES[device],
+            title=title,
+            results=results,
+            wanted=wanted,
+        )
         together.march_all(_groups(arrays, device), workers or os.cpu_count() or 1)
     return [results.found[number] for number in range(len(systems))]
 
@@ -310,6 +320,7 @@ class _Together:
         self,
         preparation: Preparation,
         arrays: Mapping[int, Arrays],
+        *,
         record: Callable[[Run], xr.Dataset | PlainRecord],
         reduce: Callable[[Any], Any] | None,
         watchers: Sequence[Watcher],

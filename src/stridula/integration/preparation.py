@@ -107,7 +107,16 @@ class Preparation:
             is_kept = self.settings.surface_rate is None
             kept = PointRecord(timing.samples, points, timing.ratio) if is_kept else None
             surfaces = SurfaceRecord(arrays.system, arrays.flat.firsts, every, kept)
-        return Run(arrays.system, arrays.flat, arrays.probes, self.settings, timing, start, title, surfaces)
+        return Run(
+            arrays.system,
+            arrays.flat,
+            arrays.probes,
+            self.settings,
+            timing,
+            start=start,
+            title=title,
+            surfaces=surfaces,
+        )
 
     def _check_size(self, arrays: Arrays, timing: Timing, every: int) -> None:
         """Raise ValueError if a record would be too large."""

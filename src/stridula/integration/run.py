@@ -71,6 +71,7 @@ class Run:
         probes: Sequence[Probe],
         settings: Settings,
         timing: Timing,
+        *,
         start: xr.Dataset | None,
         title: str,
         surfaces: SurfaceRecord | None = None,
@@ -173,10 +174,10 @@ class Run:
             self.probes,
             (*self.probed.values(done), None if timing.motion_every == 1 else self._time(timing.motion_every)),
             self.state,
-            np.concatenate([motion_about(self.described, last_step, timing.step), self.offset[None]]),
-            self.probed.state,
-            self._attributes(interrupted, {"scenario": self._scenario()} if provenance else {}),
-            None if surfaces is None else dict(zip(surfaces.shown, surfaces.names, strict=True)),
+            motion=np.concatenate([motion_about(self.described, last_step, timing.step), self.offset[None]]),
+            raw=self.probed.state,
+            attributes=self._attributes(interrupted, {"scenario": self._scenario()} if provenance else {}),
+            shown=None if surfaces is None else dict(zip(surfaces.shown, surfaces.names, strict=True)),
         )
         return record if surfaces is None else surfaces.add_to(record, self.first_step * timing.step, timing.interval)
 

@@ -46,6 +46,7 @@ def to_dataset(
     probes: Sequence[Probe],
     probe_values: tuple[Array, Array, Array | None],
     state: State,
+    *,
     motion: Array,
     raw: Array,
     attributes: dict[str, Any],

@@ -75,16 +75,8 @@ def disc_case() -> Outcome:
     # The separate body has three rigid motions.
     known, found = np.sort(np.abs(frequency + drag * turns / (2.0 * pi))), _frequencies(body)[3:]
     worst = int(np.abs(found - known).argmax())
-    rows = [
-        Row(
-            "frequency in space, at the largest error",
-            float(known[worst]),
-            float(found[worst]),
-            1e-8 * known[worst],
-            "round-off",
-            "Hz",
-        )
-    ]
+    words, tolerance = "frequency in space, at the largest error", 1e-8 * known[worst]
+    rows = [Row(words, float(known[worst]), float(found[worst]), tolerance, "round-off", "Hz")]
 
     def stiffness(speed: float) -> float:
         structure = Structure(untouched(disc(speed, CUTOFF), Force(disc(speed, CUTOFF).at(HERE), z=1.0)))
