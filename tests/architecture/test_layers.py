@@ -319,7 +319,7 @@ def test_each_field_of_a_dataclass_is_documented():
         fields = {field.name for field in dataclasses.fields(thing) if not field.name.startswith("_")}
         if hasattr(thing, "first_increment"):
             fields -= {"name", "default_fraction"}
-        missing[thing.__qualname__] = fields - documented_names(thing.__doc__ or "")
+        missing[f"{thing.__module__}.{thing.__qualname__}"] = fields - documented_names(thing.__doc__ or "")
     assert {name: fields for name, fields in missing.items() if fields} == {}
 
 

@@ -194,7 +194,15 @@ class Playing:
 
 @dataclass(frozen=True)
 class Moment:
-    """A moment to which an instrument can return: what was played, with a source of its own, and its march."""
+    """A moment to which an instrument can return.
+
+    Attributes
+    ----------
+    playing : Playing
+        The state of playing, with a source of its own.
+    march : Moment
+        The moment of its march.
+    """
 
     playing: Playing
     march: MarchMoment
