@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import stridula as st
+from stridula import plot
 
 from .user_classes import Cable, Halving
 
@@ -55,3 +56,11 @@ def test_a_track_and_a_law_from_outside_together_side_by_side_and_in_linear_theo
     assert "halving" in alone.attrs["scenario"]
     theory = st.sliding_stability(rubbed(cable, st.Coulomb(0.3)))
     assert theory.sizes["mode"] > 10
+
+
+def test_a_law_from_outside_is_drawn():
+    law = Halving(0.4, 0.05)
+    backward, forward, *_ = plot.friction(law).axes[0].lines
+    for line, sense in ((backward, -1.0), (forward, 1.0)):
+        speeds = np.abs(line.get_xdata())
+        np.testing.assert_allclose(line.get_ydata(), sense * 0.2 * (1.0 + np.exp(-speeds / 0.05)), rtol=1e-12)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..checks import instance
 from .coulomb import Coulomb, StaticKinetic
 from .friction_law import FrictionLaw
 from .lugre import LuGre
@@ -17,3 +18,9 @@ LAWS: tuple[type[FrictionLaw], ...] = (
     LuGre,
     RateAndState,
 )
+
+
+def check_friction(name: str, value: object) -> None:
+    """Raise ValueError unless an argument is a law of friction, of this package or of a user."""
+    if not isinstance(value, FrictionLaw):
+        instance(name, value, LAWS)

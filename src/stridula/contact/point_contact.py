@@ -17,7 +17,7 @@ from ..checks import ArgumentError, brief, instance, within, within_a_turn
 from ..declared import Angle, Distance, Each, Number, OneOrEach, Position, check_declared
 from .coulomb import Coulomb
 from .friction_law import FrictionLaw
-from .laws import LAWS
+from .laws import check_friction
 from .rigid_track import RigidTrack
 from .stiffness import ContactStiffness, checked_stiffness
 
@@ -106,8 +106,7 @@ class PointContact:
             raise ArgumentError(
                 "track", "be a body other than the tip's (equal bodies need names)", self.track, got=f"{body} for both"
             )
-        if not isinstance(self.friction, FrictionLaw):
-            instance("friction", self.friction, LAWS)
+        check_friction("friction", self.friction)
         within_a_turn("inclination", self.inclination)
         for word in ("name", "surface"):
             instance(word, getattr(self, word), str)

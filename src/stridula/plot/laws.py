@@ -9,8 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..arrays import Array
-from ..checks import ArgumentError, instance
-from ..contact import LAWS, FrictionLaw
+from ..checks import ArgumentError
+from ..contact import FrictionLaw
+from ..contact.laws import check_friction
 from .colours import LINE, LINES
 
 
@@ -23,7 +24,7 @@ def friction(law: FrictionLaw, velocities: Array | Sequence[float] | None = None
     Parameters
     ----------
     law : FrictionLaw
-        A law of the package or of a class derived from one, such as `Coulomb` or `Stribeck`.
+        The law, of the package, such as `Coulomb` or `Stribeck`, or a user's own.
     velocities : array_like, optional
         Slip velocities at which to draw it [m/s], of either or both signs; if left out, a range that covers the law.
 
@@ -37,7 +38,7 @@ def friction(law: FrictionLaw, velocities: Array | Sequence[float] | None = None
     ValueError
         If an argument is of the wrong type, or there are fewer than 2 velocities.
     """
-    instance("law", law, LAWS)
+    check_friction("law", law)
     chosen = np.unique(_shown_range(law) if velocities is None else _velocities(velocities))
     if law.over_decades:
         chosen = chosen[chosen > 0.0]
