@@ -80,9 +80,13 @@ class Beside:
                 return None
             assert process.stdin is not None
             assert process.stdout is not None
-            with contextlib.suppress(ConnectionError):
+            try:
                 process.stdin.write(line.encode() + b"\n")
                 await process.stdin.drain()
+            except ConnectionError:
+                # Before Python 3.11.4, the loop logs the error of a pipe whose end nobody waits for.
+                with contextlib.suppress(ConnectionError):
+                    await process.stdin.wait_closed()
             found = await process.stdout.readline()
             return json.loads(found) if found else None
         finally:
