@@ -4,7 +4,7 @@ Numbers of contact `i` of a run lie in rows ``i * count + kind``.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from . import layout as at
 from .block_rows import COMPLIANCE, DISPLACEMENT
@@ -15,9 +15,9 @@ from .direct import solve_states
 from .faces import displace, displace_freely, displace_in_space, own_compliance
 from .lanes import Array, Number, Pair, Runs, anywhere, choose, component, everywhere, held, hold, magnitude
 from .parts import Contacts, Sizes, Timing
-from .solves import carried_by, law_of, strayed
+from .solves import carried_by, strayed
 from .space import carried_in_space, free_of_own, is_second, pair_of, put_second
-from .yielding import comes_close, path_of, solve_any, yields_of
+from .yielding import comes_close, solve_and_keep
 
 # Sweeps before the first direct solve for the forces of the states found, and between direct solves.
 FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 1, 8
@@ -68,17 +68,6 @@ def start_from_last(contacts: Contacts, carried: Array, touching: Number, sizes:
             displace(faces, sizes.faces, i, runs, normal, tangential)
 
 
-@pasted
-def solve_in_turn(i: int, free: Any, before: Any, contacts: Contacts, carried: Array, step: Number, runs: Runs) -> Any:
-    """Solve contact `i` of the plane or of space, and keep how it yields."""
-    yields, path = yields_of(i, contacts.constants, runs), path_of(i, carried, runs)
-    law = law_of(i, contacts, runs)
-    touch, give, beyond = solve_any(free, law, before, yields, path, step, runs.zero)
-    hold(contacts.now, i * at.IN_STEP + at.GIVE, runs, give)
-    hold(contacts.now, i * at.IN_STEP + at.BEYOND, runs, beyond)
-    return touch
-
-
 class Sweep(NamedTuple):
     """Result of a sweep over all contacts.
 
@@ -107,7 +96,7 @@ def touch_in_plane(i: int, contacts: Contacts, carried: Array, step: Number, run
     gap = component(contacts.faces, 2 * i, DISPLACEMENT, runs) - (w.nn * normal - w.nt * tangential)
     slip = component(contacts.faces, 2 * i + 1, DISPLACEMENT, runs) - (w.tn * normal - w.tt * tangential)
     free = Free(gap, slip, strayed(carried, i, runs), w, held(now, here + at.LET_GO, runs))
-    return solve_in_turn(i, free, carried_by(carried, i, runs), contacts, carried, step, runs)
+    return solve_and_keep(i, free, carried_by(carried, i, runs), contacts, carried, step, runs)
 
 
 @pasted
@@ -116,7 +105,7 @@ def touch_in_space(i: int, contacts: Contacts, carried: Array, step: Number, run
     now, here = contacts.now, i * at.IN_STEP
     normal, pulled = held(now, here + at.NORMAL_NOW, runs), pair_of(now, here + at.TANGENTIAL_NOW, at.IN_STEP, runs)
     free, before = free_of_own(contacts, carried, i, normal, pulled, runs), carried_in_space(carried, i, runs)
-    return solve_in_turn(i, free, before, contacts, carried, step, runs)
+    return solve_and_keep(i, free, before, contacts, carried, step, runs)
 
 
 @inlined

@@ -8,9 +8,9 @@ from .lanes import Array, Number, Runs, anywhere, choose, held, hold
 from .leaving import beyond_ends
 from .parts import Contacts, Parts, Timing
 from .recording import keep_probes
-from .solves import carried_by, law_of, strayed
+from .solves import carried_by, strayed
 from .trying import try_one
-from .yielding import comes_close, path_of, solve_any, yields_of
+from .yielding import comes_close, solve_and_keep
 
 
 @pasted
@@ -20,11 +20,8 @@ def solve_single(tried: Tried, contacts: Contacts, carried: Array, timing: Timin
     hold(contacts.now, at.BEYOND, runs, runs.zero)
     if not anywhere(comes_close(0, tried.gap, contacts.constants, carried, runs) > 0.5):
         return Touch(runs.zero, runs.zero, runs.zero, runs.zero)
-    law, before = law_of(0, contacts, runs), carried_by(carried, 0, runs)
-    yields, path = yields_of(0, contacts.constants, runs), path_of(0, carried, runs)
-    touch, give, beyond = solve_any(free_of(tried, carried, runs), law, before, yields, path, timing.step, runs.zero)
-    hold(contacts.now, at.GIVE, runs, give)
-    hold(contacts.now, at.BEYOND, runs, beyond)
+    free, before = free_of(tried, carried, runs), carried_by(carried, 0, runs)
+    touch: Touch = solve_and_keep(0, free, before, contacts, carried, timing.step, runs)
     return touch
 
 

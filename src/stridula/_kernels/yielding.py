@@ -15,10 +15,11 @@ from .contact_values import (
     TouchInSpace,
     Yielding,
 )
-from .lanes import Array, Number, Pair, Runs, anywhere, choose, everywhere, held, magnitude
+from .lanes import Array, Number, Pair, Runs, anywhere, choose, everywhere, held, hold, magnitude
 from .lanewise import choose_all
+from .parts import Contacts
 from .pressing import press, share_of
-from .solves import solve_in_plane
+from .solves import law_of, solve_in_plane
 from .space import solve_in_space
 
 # Tells the types apart while compiling: branches for the other are left out, unless the function is pasted.
@@ -163,6 +164,17 @@ def solve_yielding(
         if everywhere(done > 0.5):
             break
     return touch, give, beyond
+
+
+@pasted
+def solve_and_keep(i: int, free: Any, before: Any, contacts: Contacts, carried: Array, step: Number, runs: Runs) -> Any:
+    """Solve contact `i` of the plane or of space, and keep how it yields."""
+    yields, path = yields_of(i, contacts.constants, runs), path_of(i, carried, runs)
+    law = law_of(i, contacts, runs)
+    touch, give, beyond = solve_any(free, law, before, yields, path, step, runs.zero)
+    hold(contacts.now, i * at.IN_STEP + at.GIVE, runs, give)
+    hold(contacts.now, i * at.IN_STEP + at.BEYOND, runs, beyond)
+    return touch
 
 
 @inlined
