@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import inspect
 import os
+import pkgutil
 import runpy
 import subprocess
 import sys
@@ -69,6 +70,14 @@ def cache(tmp_path_factory):
 def test_stubs_name_what_is_imported_on_first_use(package):
     stub = Path(import_module(package).__file__).with_suffix(".pyi")
     assert homes_in_stub(stub.read_text(encoding="utf-8")) == homes_at_run_time(package)
+
+
+@pytest.mark.parametrize("package", LAZY)
+def test_no_name_imported_on_first_use_is_that_of_a_module(package):
+    """Whoever imports such a module first gets the module in place of the function, in the whole process."""
+    found = import_module(package)
+    on_first_use = set(getattr(found, "_MODULE", found._HOME))
+    assert not on_first_use & {module.name for module in pkgutil.iter_modules(found.__path__)}
 
 
 def test_types_of_results_are_known_for_every_argument():

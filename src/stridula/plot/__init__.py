@@ -17,7 +17,7 @@ _HOME = {
     "bodies": "space_films",
     "directivity": "directivities",
     "friction": "laws",
-    "meshes": "meshes",
+    "meshes": "mesh_drawings",
     "mobility": "mobilities",
     "mode_shapes": "shapes_of_modes",
     "overview": "timelines",

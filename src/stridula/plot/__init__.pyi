@@ -10,7 +10,7 @@ from .films import animate as animate
 from .laws import friction as friction
 from .loci import root_loci as root_loci
 from .maps import regime_map as regime_map
-from .meshes import meshes as meshes
+from .mesh_drawings import meshes as meshes
 from .mobilities import mobility as mobility
 from .mode_films import animate_mode as animate_mode
 from .reels import Film as Film
