@@ -23,7 +23,7 @@ import numpy as np
 
 import stridula as st
 from ratios import WARM_UP, Ratio, must_agree, show, sized
-from stridula._kernels import layout as at
+from stridula._kernels.layout import columns as at
 from stridula.integration.marches import Excitation, March
 from stridula.integration.start import state_at_start
 from stridula.lowering import assemble

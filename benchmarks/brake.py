@@ -21,8 +21,8 @@ import stridula as st
 from against_c import Result, built, parameters, without_gcc
 from ratios import Ratio, must_agree, over, peak_memory, seconds, show, sized
 from space import IRON, LINING
-from stridula._kernels import contacts as kernel
-from stridula._kernels import layout as at
+from stridula._kernels.contacts import sweeps as kernel
+from stridula._kernels.layout import columns as at
 from stridula.integration.equilibrium_start import in_equilibrium
 from stridula.integration.marches import March, imposed_on
 from stridula.integration.start import state_at_start

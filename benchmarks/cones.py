@@ -17,8 +17,8 @@ import numpy as np
 
 from against_siconos import PEER
 from ratios import arguments, sized
-from stridula._kernels import layout as at
-from stridula._kernels.law_columns import LAW_COLUMNS, STATIC
+from stridula._kernels.layout import columns as at
+from stridula._kernels.layout.laws import LAW_COLUMNS, STATIC
 from stridula.integration.contact_solve import GaussSeidel
 from stridula.integration.forces import forces_of
 

@@ -37,9 +37,9 @@ import numpy as np
 
 import stridula as st
 from ratios import REPEATS, SHORT, Ratio, arguments, must_agree, show, sized
-from stridula._kernels.parts import Imposed as ImposedOnRuns
-from stridula._kernels.parts import Parts, Records
-from stridula._kernels.vectors import LANES
+from stridula._kernels.lanes.vectors import LANES
+from stridula._kernels.layout.parts import Imposed as ImposedOnRuns
+from stridula._kernels.layout.parts import Parts, Records
 from stridula.integration.cuda_march import CudaMarch, require_cuda
 from stridula.integration.marches import Excitation, March, imposed_on
 from stridula.integration.start import state_at_start

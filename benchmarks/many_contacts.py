@@ -17,8 +17,8 @@ import numpy as np
 import stridula as st
 from against_c import Result, built, parameters, without_gcc
 from ratios import Ratio, must_agree, over, seconds, show, sized
-from stridula._kernels import contacts as kernel
-from stridula._kernels import layout as at
+from stridula._kernels.contacts import sweeps as kernel
+from stridula._kernels.layout import columns as at
 from stridula.integration.marches import March
 from stridula.lowering.packing import aligned, scale_of
 from systems import case_of, limit_of, slab

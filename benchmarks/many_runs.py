@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import stridula as st
 from ratios import Ratio, must_agree, over, seconds, show, sized
-from stridula._kernels.vectors import LANES
+from stridula._kernels.lanes.vectors import LANES
 from stridula.integration.marches import Chunk, March
 from systems import FORCES, GIVEN, RUNS, SIZES, TOLERANCE, beams, case_of, limit_of, marching, same_start, squeals
 

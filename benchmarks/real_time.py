@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 
 import stridula as st
 from ratios import REPEATS, WARM_UP, Ratio, show, sized
-from stridula._kernels.vectors import LANES
+from stridula._kernels.lanes.vectors import LANES
 from stridula.papers.laulagnet_2011.runs import CASES
 from stridula.scenarios import load_scenario
 

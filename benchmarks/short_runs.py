@@ -9,7 +9,7 @@ from typing import Any
 
 import stridula as st
 from ratios import Ratio, over, seconds, show, sized
-from stridula._kernels.vectors import LANES
+from stridula._kernels.lanes.vectors import LANES
 from stridula.analysis.regimes import TAKEN, regime_of
 from stridula.integration.marches import March
 from systems import SCHEME, Case, case_of, limit_of, marching, squeals

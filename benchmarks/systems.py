@@ -12,7 +12,7 @@ import xarray as xr
 
 import stridula as st
 from ratios import must_agree, sized
-from stridula._kernels import layout as at
+from stridula._kernels.layout import columns as at
 from stridula.integration.marches import Excitation, March, imposed_on
 from stridula.integration.start import state_at_start
 from stridula.lowering import assemble

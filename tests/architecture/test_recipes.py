@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import stridula
-from stridula._kernels.law_columns import CODES
+from stridula._kernels.layout.laws import CODES
 
 Steps = Sequence[tuple[str, str, str]]
 
@@ -68,19 +68,19 @@ END = """    if law.code == at.LINEAR_WEAKENING:
 # The steps of a recipe: file, text there, text in its place.
 LAW_STEPS = (
     (
-        "_kernels/layout.py",
+        "_kernels/layout/columns.py",
         f" = range({len(CODES)})\n# In place of the law",
         f", TRIAL_WEAKENING = range({len(CODES) + 1})\n# In place of the law",
     ),
     (
-        "_kernels/law_columns.py",
+        "_kernels/layout/laws.py",
         '    "SLIP": _RATE_AND_STATE,\n',
         '    "SLIP": _RATE_AND_STATE,\n    "TRIAL_WEAKENING": _WEAKENING,\n',
     ),
-    ("_kernels/law_columns.py", '_STICKS = {"COULOMB", ', '_STICKS = {"COULOMB", "TRIAL_WEAKENING", '),
-    ("_kernels/friction.py", "    if law.code == at.STRIBECK:\n", RATIO + "    if law.code == at.STRIBECK:\n"),
+    ("_kernels/layout/laws.py", '_STICKS = {"COULOMB", ', '_STICKS = {"COULOMB", "TRIAL_WEAKENING", '),
+    ("_kernels/contact/friction.py", "    if law.code == at.STRIBECK:\n", RATIO + "    if law.code == at.STRIBECK:\n"),
     (
-        "_kernels/friction.py",
+        "_kernels/contact/friction.py",
         END,
         SCALE + END,
     ),

@@ -17,8 +17,8 @@ from physics.cases import SCHEME_NAMES, SCHEMES
 import stridula as st
 from invariants.laws import violations
 from invariants.recipes import Foot, Recipe, Units, build, number, recipes, run_of
-from stridula._kernels import layout
-from stridula._kernels.law_columns import LAW_COLUMNS
+from stridula._kernels.layout import columns as layout
+from stridula._kernels.layout.laws import LAW_COLUMNS
 
 STEPS = 1000
 schemes = some.sampled_from(SCHEMES)
@@ -298,8 +298,8 @@ def test_harness_rejects_a_penalty_contact():
 
 def test_harness_rejects_friction_with_the_wrong_sign():
     """Negative control: the solve of one contact in plain Python with reversed friction replaces the kernel's."""
-    from stridula._kernels import contact as kernel
-    from stridula._kernels.contact_values import Before, Compliance, Free, Law
+    from stridula._kernels.contact import exact as kernel
+    from stridula._kernels.layout.contact_values import Before, Compliance, Free, Law
 
     law, step = st.Coulomb(0.4), 1e-4
     marched = Law(layout.COULOMB, np.array([[0.4] + [0.0] * (LAW_COLUMNS - 1)]), 0, 0.4)

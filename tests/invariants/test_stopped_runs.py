@@ -9,8 +9,8 @@ import pytest
 from physics.cases import SCHEME_NAMES, SCHEMES
 
 import stridula as st
-from stridula._kernels import layout
-from stridula._kernels.ledger import Account, believed
+from stridula._kernels.books.ledger import Account, believed
+from stridula._kernels.layout import columns as layout
 from stridula.integration import together as together_module
 from stridula.integration.marches import March
 from stridula.integration.stops import CAUSE, ENDED, WHAT

@@ -10,8 +10,9 @@ from numba.core.caching import _CacheLocator
 
 import stridula as st
 from stridula._kernels import march
+from stridula.integration.compiled_code import compiled_functions
 
-KERNEL, START = "march.march", "contacts.solve_closed"
+KERNEL, START = "march.march", "contacts.sweeps.solve_closed"
 
 
 def incomplete_cache(folder: Path) -> Path:
@@ -23,6 +24,8 @@ def incomplete_cache(folder: Path) -> Path:
     stored = march.march._cache._cache_file._load_index()
     (single,) = [file for (signature, *_), file in stored.items() if signature[1:4] == (types.none,) * 3]
     ignored = shutil.ignore_patterns("*.pyc", single)
-    subfolder = _CacheLocator.get_suitable_cache_subpath(march.__file__)
-    shutil.copytree(march.march.stats.cache_path, folder / subfolder, ignore=ignored)
+    for function in compiled_functions("stridula._kernels").values():
+        subfolder = _CacheLocator.get_suitable_cache_subpath(function.py_func.__code__.co_filename)
+        if not (folder / subfolder).exists():
+            shutil.copytree(function.stats.cache_path, folder / subfolder, ignore=ignored)
     return folder

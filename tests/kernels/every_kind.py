@@ -8,34 +8,21 @@ is not in the cache.
 from __future__ import annotations
 
 import json
-import pkgutil
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from importlib import import_module
 from itertools import islice
 
 import numpy as np
-from numba.core.dispatcher import Dispatcher
 from physics.cases import CASES, SCHEMES, STEP, pair, slider, track, transverse
 
 import stridula as st
 from kernels.systems import AGING, BELT, SYSTEMS, WEAK, block_on_a_plane, oscillator, pad_on
-from stridula import _kernels
+from stridula.integration.compiled_code import compiled_functions
 
 STEPS = 40
 # The first and the end of the runs of each word.
 SPANS = {"": (0, None), "alone": (0, 3), "abreast": (3, 6), "other type": (0, 1)}
-
-
-def compiled_functions() -> dict[str, Dispatcher]:
-    modules = [import_module(f"{_kernels.__name__}.{found.name}") for found in pkgutil.iter_modules(_kernels.__path__)]
-    return {
-        f"{module.__name__.rpartition('.')[2]}.{name}": thing
-        for module in modules
-        for name, thing in vars(module).items()
-        if isinstance(thing, Dispatcher) and thing.py_func.__module__ == module.__name__
-    }
 
 
 def marched(system: st.System, step: float = STEP, **words):
@@ -113,9 +100,9 @@ def other_numbers() -> Iterator[Callable[[], object]]:
 
 def main(words: str) -> None:
     made = [run() for run in islice(runs(), *SPANS[words])]
-    functions = compiled_functions()
+    functions = compiled_functions("stridula._kernels")
     if words == "other type":
-        functions["friction.set_valued"](np.int8(0))
+        functions["contact.friction.set_valued"](np.int8(0))
     seen = {
         name: {
             "signatures": [str(signature) for signature in function.signatures],

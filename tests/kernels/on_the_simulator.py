@@ -12,7 +12,7 @@ from physics.cases import dragged, pair, slider, track, transverse
 from physics.test_circular_paths import on_a_circle, riders
 
 import stridula as st
-from stridula._kernels import layout as at
+from stridula._kernels.layout import columns as at
 from stridula.integration.cuda_march import CudaMarch
 from stridula.integration.marches import March, imposed_on
 from stridula.integration.start import state_at_start

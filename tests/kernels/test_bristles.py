@@ -12,8 +12,8 @@ from physics.cases import SCHEME_NAMES
 import stridula as st
 from kernels.general_twin import before_start, central, exact
 from kernels.way_in_space_twin import SLIDING, closing, on_bristles, sliding
-from stridula._kernels import layout as at
-from stridula._kernels.law_columns import LAW_COLUMNS
+from stridula._kernels.layout import columns as at
+from stridula._kernels.layout.laws import LAW_COLUMNS
 from stridula.integration.contact_solve import GaussSeidel
 from stridula.integration.forces import forces_of
 

@@ -47,7 +47,7 @@ def test_nothing_compiles_twice(tmp_path):
     # without optimisation, which takes a tenth of the time.
     surroundings = {"NUMBA_CACHE_DIR": str(incomplete_cache(tmp_path)), "NUMBA_OPT": "0"}
     without, waited = counts("other", "type", **surroundings)
-    assert named(without, "compiled") == {KERNEL, "friction.set_valued"}
+    assert named(without, "compiled") == {KERNEL, "contact.friction.set_valued"}
     assert min(waited) > 0.0
 
 

@@ -8,10 +8,11 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as some
 
 from kernels.twin import contact_states
-from stridula._kernels import layout, solves
-from stridula._kernels.contact import solve_contact
-from stridula._kernels.contact_values import Before, Compliance, Free, Law
-from stridula._kernels.law_columns import LAW_COLUMNS
+from stridula._kernels.contact import solves
+from stridula._kernels.contact.exact import solve_contact
+from stridula._kernels.layout import columns as layout
+from stridula._kernels.layout.contact_values import Before, Compliance, Free, Law
+from stridula._kernels.layout.laws import LAW_COLUMNS
 
 SEPARATED, STICKING, SLIDING = 0, 1, 2
 

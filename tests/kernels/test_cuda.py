@@ -13,7 +13,7 @@ import pytest
 
 import stridula
 from kernels.on_the_simulator import CASES
-from stridula._kernels import layout as at
+from stridula._kernels.layout import columns as at
 from stridula.integration import cuda_march
 
 TOLERANCE = 1e-9

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import stridula as st
-from stridula._kernels import layout as at
-from stridula._kernels.contact import SLIDING, STICKING
+from stridula._kernels.contact.exact import SLIDING, STICKING
+from stridula._kernels.layout import columns as at
 from stridula.integration.contact_solve import GaussSeidel
 from stridula.integration.forces import forces_of
 from stridula.lowering.own_laws import law_of_march

@@ -6,9 +6,8 @@ import numba
 import numpy as np
 import pytest
 
-from stridula._kernels import lanes
-from stridula._kernels.block_rows import NUMBER, WAVE_ROWS
-from stridula._kernels.lanes import (
+from stridula._kernels.lanes import operations as lanes
+from stridula._kernels.lanes.operations import (
     anywhere,
     choose,
     everywhere,
@@ -25,8 +24,9 @@ from stridula._kernels.lanes import (
     with_lane,
     write,
 )
-from stridula._kernels.vectors import LANES
-from stridula._kernels.waves import set_multiples
+from stridula._kernels.lanes.vectors import LANES
+from stridula._kernels.layout.rows import NUMBER, WAVE_ROWS
+from stridula._kernels.modes.waves import set_multiples
 
 RANDOM = np.random.default_rng(7)
 A, B, C = RANDOM.normal(size=(3, LANES))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from stridula._kernels import layout as at
-from stridula._kernels.ledger import CONTACT_TOLERANCE, LEDGER_TOLERANCE, Account, believed, keep_beside
+from stridula._kernels.books.ledger import CONTACT_TOLERANCE, LEDGER_TOLERANCE, Account, believed, keep_beside
+from stridula._kernels.layout import columns as at
 
 
 def created(energies, before, initial, largest, of_loads, dissipative, damped_alone):

@@ -18,7 +18,7 @@ from physics.cases import CASES, SCHEMES, STEP, every_step
 
 import stridula as st
 from kernels import twin
-from stridula._kernels import layout
+from stridula._kernels.layout import columns as layout
 from stridula.lowering.blocks import Recurrence
 
 STEPS = 1500

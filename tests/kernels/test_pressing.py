@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from stridula._kernels.contact_values import Indentations, Yielding
-from stridula._kernels.pressing import between, press, press_on_path, quotient, share_of
+from stridula._kernels.contact.pressing import between, press, press_on_path, quotient, share_of
+from stridula._kernels.layout.contact_values import Indentations, Yielding
 
 STEP = 1e-5
 DRAWS = 150

@@ -14,8 +14,14 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import stridula as st
-from stridula._kernels import bookkeeping, contact, contacts, direct, faces, friction, layout, solves
-from stridula._kernels.contact_values import Before, Compliance, Free, Law
+from stridula._kernels.books import bookkeeping
+from stridula._kernels.contact import exact as contact
+from stridula._kernels.contact import friction, solves
+from stridula._kernels.contacts import direct
+from stridula._kernels.contacts import displacements as faces
+from stridula._kernels.contacts import sweeps as contacts
+from stridula._kernels.layout import columns as layout
+from stridula._kernels.layout.contact_values import Before, Compliance, Free, Law
 from stridula.verification.prony import exponents
 from stridula.verification.systems import mode_coupling
 from stridula.verification.systems.on_belts import Slider, den_hartog, swing

@@ -10,9 +10,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stridula as st
-from stridula._kernels import layout as at
-from stridula._kernels.contact_values import Indentations, Yielding
-from stridula._kernels.pressing import press, share_of
+from stridula._kernels.contact.pressing import press, share_of
+from stridula._kernels.layout import columns as at
+from stridula._kernels.layout.contact_values import Indentations, Yielding
 from stridula.contact.stiffness import force_at
 from stridula.lowering import assemble
 from stridula.lowering.blocks import blocks_of

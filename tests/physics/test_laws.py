@@ -7,7 +7,7 @@ import pytest
 
 import stridula as st
 from physics.cases import CASES, SCHEME_NAMES, SCHEMES, STEP, every_step, pair, slider, track, transverse
-from stridula._kernels import layout
+from stridula._kernels.layout import columns as layout
 
 STEPS = 60_000
 EPS = np.finfo(float).eps

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stridula as st
-from stridula._kernels import layout as at
+from stridula._kernels.layout import columns as at
 from stridula.integration.live import LiveMarch
 
 RATE = 48e3

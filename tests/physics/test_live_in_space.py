@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import stridula as st
-from stridula._kernels import layout as at
+from stridula._kernels.layout import columns as at
 from stridula.integration.live import LiveMarch
 from stridula.lowering import assemble
 

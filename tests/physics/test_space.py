@@ -10,8 +10,8 @@ from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 import stridula as st
-from stridula._kernels import layout as at
-from stridula._kernels.law_columns import LAW_COLUMNS
+from stridula._kernels.layout import columns as at
+from stridula._kernels.layout.laws import LAW_COLUMNS
 from stridula.integration.contact_solve import GaussSeidel
 from stridula.integration.forces import forces_of
 from stridula.verification.surfaces import RADIUS, WEIGHT, coin

@@ -13,8 +13,8 @@ from hypothesis import strategies as some
 
 import stridula as st
 from stridula import analysis
-from stridula._kernels import layout as at
-from stridula._kernels.slipping import STOPPED
+from stridula._kernels.contact.slipping import STOPPED
+from stridula._kernels.layout import columns as at
 from stridula.acoustics.pressures import check_length, check_rate
 from stridula.acoustics.resampling import LOWEST, ratio_of
 from stridula.checks import at_least, at_most, listed, within

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import stridula as st
-from stridula._kernels import friction
-from stridula._kernels import layout as at
-from stridula._kernels.contact_values import Law
-from stridula._kernels.law_columns import CODES, LAW_COLUMNS, NEW_STATE, PARAMETERS
+from stridula._kernels.contact import friction
+from stridula._kernels.layout import columns as at
+from stridula._kernels.layout.contact_values import Law
+from stridula._kernels.layout.laws import CODES, LAW_COLUMNS, NEW_STATE, PARAMETERS
 from stridula.contact import LAWS
 from stridula.lowering.own_laws import check_law, law_of_march
 from stridula.scenarios.schema import json_schema

@@ -1,7 +1,7 @@
 """The march on a graphics card: the same source as `march`, one run per thread.
 
-All values are scalars there, so the plain functions of `lanes` apply. Runs are adjacent in memory, so that threads read
-whole lines of it. Double precision; the compiler for the card decides which products and sums are fused.
+All values are scalars there, so the plain functions of `operations` apply. Runs are adjacent in memory, so that threads
+read whole lines of it. Double precision; the compiler for the card decides which products and sums are fused.
 """
 
 from types import FunctionType

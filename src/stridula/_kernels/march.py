@@ -5,21 +5,21 @@ Steps 1 to 6 in docstrings and comments of this package are those of *Contact in
 
 import math
 
-from . import layout as at
-from .block_rows import CONTACTS, SINE
-from .bookkeeping import credit, stored_in_contacts
-from .compiled import entry, pasted
-from .contact_values import Compliance, Touch, Tried
-from .coupled import energy_of
-from .lanes import INTEGER, TRUTH, Runs, anywhere, choose, everywhere, hold, magnitude, placed
-from .leaving import end, leave
-from .loads import change_loads, credit_loads, differ
-from .parts import Parts
-from .recording import begin_sample, height_of, keep_probes, record_contact, record_energies, remember_probes
+from .books.bookkeeping import credit, stored_in_contacts
+from .books.leaving import end, leave
+from .books.recording import begin_sample, height_of, keep_probes, record_contact, record_energies, remember_probes
+from .lanes.compiled import entry, pasted
+from .lanes.operations import INTEGER, TRUTH, Runs, anywhere, choose, everywhere, hold, magnitude, placed
+from .layout import columns as at
+from .layout.contact_values import Compliance, Touch, Tried
+from .layout.parts import Parts
+from .layout.rows import CONTACTS, SINE
+from .modes.coupled import energy_of
+from .modes.loads import change_loads, credit_loads, differ
+from .modes.turning import credit_turning, turn_bodies
 from .several import keep_many, touch_many
 from .single import keep_one, touch_one
 from .trying import complete_one, gap_of
-from .turning import credit_turning, turn_bodies
 
 
 @pasted

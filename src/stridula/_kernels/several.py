@@ -1,9 +1,6 @@
 """Steps of any number of contacts, or of coupled modes."""
 
-from . import layout as at
-from .block_rows import DISPLACEMENT
-from .bookkeeping import (
-    add,
+from .books.bookkeeping import (
     credit,
     driven_work,
     keep_anchor,
@@ -15,18 +12,9 @@ from .bookkeeping import (
     share_states,
     store_in,
 )
-from .circles import convected
-from .compiled import inlined, pasted
-from .contact_in_space import next_in_space
-from .contact_values import Free, FreeInSpace, Moved, Touch
-from .contacts import solve_closed
-from .faces import own_compliance
-from .friction import set_valued
-from .lanes import Number, Pair, Runs, anywhere, choose, component, held, hold
-from .leaving import any_beyond_ends
-from .parts import Carried, Contacts, Parts, Sizes
-from .solves import law_of, resting, strayed
-from .space import (
+from .books.leaving import any_beyond_ends
+from .contact.friction import set_valued
+from .contact.in_space import (
     carried_in_space,
     direction,
     free_along,
@@ -37,8 +25,19 @@ from .space import (
     past_along,
     whole_compliance,
 )
+from .contact.law_in_space import next_in_space
+from .contact.solves import law_of, resting, strayed
+from .contact.yielding import about_indentation, comes_close
+from .contacts.circles import convected
+from .contacts.displacements import own_compliance
+from .contacts.sweeps import solve_closed
+from .lanes.compiled import inlined, pasted
+from .lanes.operations import Number, Pair, Runs, add, anywhere, choose, component, held, hold
+from .layout import columns as at
+from .layout.contact_values import Free, FreeInSpace, Moved, Touch
+from .layout.parts import Carried, Contacts, Parts, Sizes
+from .layout.rows import DISPLACEMENT
 from .trying import complete_many, place_after, soften, try_many
-from .yielding import about_indentation, comes_close
 
 # Error of the contact forces, relative to the largest, above which the run stops.
 UNBELIEVABLE = 1e-3

@@ -1,16 +1,16 @@
 """Steps of a single contact between bodies of uncoupled modes."""
 
-from . import layout as at
-from .bookkeeping import credit, keep_books, keep_place
-from .compiled import inlined, pasted
-from .contact_values import Compliance, Free, Moved, Touch, Tried
-from .lanes import Array, Number, Runs, anywhere, choose, held, hold
-from .leaving import beyond_ends
-from .parts import Contacts, Parts, Timing
-from .recording import keep_probes
-from .solves import carried_by, strayed
+from .books.bookkeeping import credit, keep_books, keep_place
+from .books.leaving import beyond_ends
+from .books.recording import keep_probes
+from .contact.solves import carried_by, strayed
+from .contact.yielding import comes_close, solve_and_keep
+from .lanes.compiled import inlined, pasted
+from .lanes.operations import Array, Number, Runs, anywhere, choose, held, hold
+from .layout import columns as at
+from .layout.contact_values import Compliance, Free, Moved, Touch, Tried
+from .layout.parts import Contacts, Parts, Timing
 from .trying import try_one
-from .yielding import comes_close, solve_and_keep
 
 
 @pasted

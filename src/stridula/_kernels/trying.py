@@ -1,14 +1,14 @@
 """Trial and completion of steps of the modes (1 to 4, 6): with one contact in one pass, with several in three."""
 
-from . import layout as at
-from .block_rows import CONTACTS, POSITION, SINE, Q
-from .circles import go_round
-from .compiled import inlined, pasted
-from .compliance import set_compliance, set_compliance_of_coupled
-from .contact_values import Compliance, Done, Touch, Tried
-from .coupled import complete_coupled, try_coupled
-from .lanes import TRUTH, Array, Number, Pair, Runs, anywhere, choose, fused, held, hold, read, total
-from .modes import (
+from .contacts.circles import go_round
+from .contacts.compliance import set_compliance, set_compliance_of_coupled
+from .lanes.compiled import inlined, pasted
+from .lanes.operations import TRUTH, Array, Number, Pair, Runs, anywhere, choose, fused, held, hold, read, total
+from .layout import columns as at
+from .layout.contact_values import Compliance, Done, Touch, Tried
+from .layout.parts import Contacts, Modes, Parts, Paths, Sizes
+from .layout.rows import CONTACTS, POSITION, SINE, Q
+from .modes.blocks import (
     add_push,
     clear_push,
     complete_all,
@@ -20,8 +20,8 @@ from .modes import (
     try_all,
     two_products,
 )
-from .parts import Contacts, Modes, Parts, Paths, Sizes
-from .waves import set_waves
+from .modes.coupled import complete_coupled, try_coupled
+from .modes.waves import set_waves
 
 
 @inlined

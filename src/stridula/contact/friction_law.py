@@ -82,7 +82,7 @@ class FrictionLaw(ABC):
 
     @abstractmethod
     def parameters(self) -> dict[str, float]:
-        """Return the parameters of the law in the march, by their names there: `_kernels.law_columns.PARAMETERS`."""
+        """Return the parameters of the law in the march, by their names there: `_kernels.layout.laws.PARAMETERS`."""
 
     @abstractmethod
     def coefficient_at(self, velocity: Array | float) -> Array:

@@ -6,8 +6,8 @@ from copy import copy
 
 import numpy as np
 
-from .._kernels import layout as at
-from .._kernels.ledger import Account, believed, keep_beside
+from .._kernels.books.ledger import Account, believed, keep_beside
+from .._kernels.layout import columns as at
 from ..arrays import Array
 from ..lowering import Assembly
 from ..lowering.blocks import Blocks

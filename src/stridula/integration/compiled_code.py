@@ -6,6 +6,7 @@ import atexit
 import hashlib
 import os
 import shutil
+import sys
 import tempfile
 import warnings
 from collections.abc import Callable, Iterator
@@ -17,6 +18,7 @@ from typing import Any
 import numba
 from numba.core import event
 from numba.core.caching import FunctionCache
+from numba.core.dispatcher import Dispatcher
 
 # Files beside the compiled code: the digest of its sources, and the lock of the process that changes it.
 STAMP, LOCK = "stridula-kernels", "stridula-storing"
@@ -42,19 +44,37 @@ def _anything() -> None:
     """Function for the test whether compiled code can be kept."""
 
 
-def forget_other_sources(kernel: Any) -> None:
-    """Delete compiled code of sources other than the present ones of the kernels.
+def forget_other_sources(package: str) -> None:
+    """Delete compiled code of sources other than the present ones of a package, given by name, and those in it.
 
     numba checks only the file of the called function: after an update of the package in place it would silently run
-    old code.
+    old code. Its functions must have been imported; each folder of them has compiled code of its own.
     """
-    folder = Path(kernel._cache.cache_path)
-    stamp, sources = folder / STAMP, hashlib.blake2b(digest_size=16)
-    for path in sorted(Path(kernel.py_func.__code__.co_filename).parent.glob("*.py")):
+    sources = hashlib.blake2b(digest_size=16)
+    for path in sorted(Path(path) for root in sys.modules[package].__path__ for path in Path(root).rglob("*.py")):
         sources.update(path.read_bytes())
+    for folder in {Path(function._cache.cache_path) for function in compiled_functions(package).values()}:
+        _keep_only(folder, sources.hexdigest())
+
+
+def compiled_functions(package: str) -> dict[str, Any]:
+    """Return the compiled functions of a package that have been imported, by their names in it."""
+    within = f"{package}."
+    return {
+        f"{name.removeprefix(within)}.{word}": thing
+        for name, module in list(sys.modules.items())
+        if name.startswith(within)
+        for word, thing in vars(module).items()
+        if isinstance(thing, Dispatcher) and thing.py_func.__module__ == name
+    }
+
+
+def _keep_only(folder: Path, sources: str) -> None:
+    """Delete the compiled code in a folder unless it is that of some sources, given by their digest."""
+    stamp = folder / STAMP
 
     def is_present() -> bool:
-        return stamp.exists() and stamp.read_text(encoding="ascii") == sources.hexdigest()
+        return stamp.exists() and stamp.read_text(encoding="ascii") == sources
 
     # If the folder cannot be written, numba keeps nothing either.
     with suppress(OSError):
@@ -65,7 +85,7 @@ def forget_other_sources(kernel: Any) -> None:
                 return
             for compiled in folder.glob("*.nb[ic]"):
                 compiled.unlink(missing_ok=True)
-            stamp.write_text(sources.hexdigest(), encoding="ascii")
+            stamp.write_text(sources, encoding="ascii")
 
 
 def store_one_at_a_time() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from numba.core import config
 
-from .._kernels.parts import Imposed, Parts, Records
+from .._kernels.layout.parts import Imposed, Parts, Records
 from ..arrays import Array
 from ..extras import how_to_install
 from ..lowering.blocks import Blocks

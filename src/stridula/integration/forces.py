@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from .._kernels import layout as at
-from .._kernels.contact_values import Before, Compliance, Free, Law
-from .._kernels.contacts import solve_closed
-from .._kernels.lanes import Runs
-from .._kernels.law_columns import STATIC
-from .._kernels.parts import Contacts, Sizes, Timing
-from .._kernels.slipping import STICKING
-from .._kernels.solves import solve
-from .._kernels.vectors import LANES
+from .._kernels.contact.slipping import STICKING
+from .._kernels.contact.solves import solve
+from .._kernels.contacts.sweeps import solve_closed
+from .._kernels.lanes.operations import Runs
+from .._kernels.lanes.vectors import LANES
+from .._kernels.layout import columns as at
+from .._kernels.layout.contact_values import Before, Compliance, Free, Law
+from .._kernels.layout.laws import STATIC
+from .._kernels.layout.parts import Contacts, Sizes, Timing
 from ..arrays import Array
 from ..lowering.packing import PLAIN, aligned, columns, compliance_in_blocks, room_to_solve, side_by_side
 from .contact_solve import GaussSeidel

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .._kernels import layout as at
+from .._kernels.layout import columns as at
 from ..arrays import Array
 from ..checks import positive
 from ..lowering.schemes import ExactModal, Scheme

@@ -14,8 +14,8 @@ from typing import Any, Literal, TypeVar, Unpack, overload
 
 import xarray as xr
 
-from .._kernels.layout import FINISHED
-from .._kernels.vectors import LANES
+from .._kernels.lanes.vectors import LANES
+from .._kernels.layout.columns import FINISHED
 from ..checks import ArgumentError, choice, count, counted
 from ..lowering import Assembly, ContactRows
 from ..records.dataset import RECORDED

@@ -11,12 +11,12 @@ from typing import Any
 import numba
 import numpy as np
 
-from .._kernels import layout as at
-from .._kernels.block_rows import CONTACTS
+from .._kernels.lanes.vectors import LANES
+from .._kernels.layout import columns as at
+from .._kernels.layout.parts import Carried, Contacts, Imposed, Modes, Parts, Paths, Probes, Records, Timing, Turning
+from .._kernels.layout.rows import CONTACTS
 from .._kernels.march import march
-from .._kernels.parts import Carried, Contacts, Imposed, Modes, Parts, Paths, Probes, Records, Timing, Turning
-from .._kernels.turning import OF_CONTACT
-from .._kernels.vectors import LANES
+from .._kernels.modes.turning import OF_CONTACT
 from ..arrays import Array
 from ..lowering import Assembly
 from ..lowering.blocks import Blocks, ContactBlocks, ProbeBlocks
@@ -43,7 +43,7 @@ from .contact_solve import GaussSeidel
 
 _compiled: Any = march
 if not PLAIN:
-    forget_other_sources(march)
+    forget_other_sources(march.__module__.rpartition(".")[0])
     store_one_at_a_time()
 
 

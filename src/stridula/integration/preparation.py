@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import xarray as xr
 
-from .._kernels.layout import COLUMNS, ENERGIES
+from .._kernels.layout.columns import COLUMNS, ENERGIES
 from ..checks import ArgumentError, at_least, at_most, instance, positive
 from ..lowering import Assembly, assemble
 from ..ordinary import of_ordinary_size

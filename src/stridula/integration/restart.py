@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .._kernels import layout as at
+from .._kernels.layout import columns as at
 from ..arrays import Array
 from ..checks import ArgumentError, brief, instance, listed
 from ..lowering import Assembly, Signal, with_motion_so_far, with_travel

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .._kernels import layout as at
+from .._kernels.layout import columns as at
 from ..arrays import Array
 from ..linear.free_motions import free_words
 from ..lowering import Assembly

@@ -6,13 +6,13 @@ from functools import cached_property
 
 import numpy as np
 
-from .._kernels import layout as at
-from .._kernels.contact import SEPARATED, SLIDING, STICKING
-from .._kernels.contact_values import Law, Yielding
-from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
-from .._kernels.law_columns import STATIC
-from .._kernels.pressing import stored_in
-from .._kernels.slipping_in_space import ratio_of_state, state_after
+from .._kernels.contact.exact import SEPARATED, SLIDING, STICKING
+from .._kernels.contact.friction import next_state, set_valued, sliding_ratio, state_ratio
+from .._kernels.contact.pressing import stored_in
+from .._kernels.contact.slipping_in_space import ratio_of_state, state_after
+from .._kernels.layout import columns as at
+from .._kernels.layout.contact_values import Law, Yielding
+from .._kernels.layout.laws import STATIC
 from ..arrays import Array
 from ..checks import ArgumentError
 from ..lowering import Assembly, ContactRows

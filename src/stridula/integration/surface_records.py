@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .._kernels import layout as at
+from .._kernels.layout import columns as at
 from ..arrays import Array
 from ..records.by_surface import groups
 from ..records.dataset import OVER_TIME

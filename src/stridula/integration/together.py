@@ -5,8 +5,8 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Hashable, Sequence
 
-from .._kernels.layout import FINISHED
-from .._kernels.vectors import LANES
+from .._kernels.lanes.vectors import LANES
+from .._kernels.layout.columns import FINISHED
 from .interrupts import DeferredInterrupt
 from .marches import Excitation, March, compilations
 from .run import Run

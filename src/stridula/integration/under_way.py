@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .._kernels import layout as at
-from .._kernels.contact import SEPARATED
+from .._kernels.contact.exact import SEPARATED
+from .._kernels.layout import columns as at
 from ..arrays import Array
 from ..checks import instance, positive
 from ..lowering import Assembly, assemble, with_travel

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from .._kernels import layout as at
-from .._kernels.law_columns import LAW_COLUMNS, STATIC
+from .._kernels.layout import columns as at
+from .._kernels.layout.laws import LAW_COLUMNS, STATIC
 from ..arrays import Array
 from ..bodies.paths import Path
 from ..checks import ArgumentError, at_most

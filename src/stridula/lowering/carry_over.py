@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .._kernels import layout as at
+from .._kernels.layout import columns as at
 from ..arrays import Array
 from ..bodies import AxisymmetricBody, BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate
 from ..contact import PointContact

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from .._kernels import friction as marched
-from .._kernels import layout as at
-from .._kernels.contact_values import Law
-from .._kernels.law_columns import CODES, LAW_COLUMNS, NEW_STATE, PARAMETERS, STATIC
+from .._kernels.contact import friction as marched
+from .._kernels.layout import columns as at
+from .._kernels.layout.contact_values import Law
+from .._kernels.layout.laws import CODES, LAW_COLUMNS, NEW_STATE, PARAMETERS, STATIC
 from ..arrays import Array
 from ..checks import ArgumentError
 from ..contact import LAWS, FrictionLaw

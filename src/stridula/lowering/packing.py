@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numba.core import config
 
-from .._kernels import layout as at
-from .._kernels.block_rows import AMPLITUDE, COMPLIANCE, CONTACTS, NUMBER, WAVE_ROWS, WAVE_SET
-from .._kernels.direct import FURTHER_ROWS, SAVED
-from .._kernels.parts import Sizes
-from .._kernels.turning import DRAG, TURN_ROWS
-from .._kernels.vectors import LANES
+from .._kernels.contacts.direct import FURTHER_ROWS, SAVED
+from .._kernels.lanes.vectors import LANES
+from .._kernels.layout import columns as at
+from .._kernels.layout.parts import Sizes
+from .._kernels.layout.rows import AMPLITUDE, COMPLIANCE, CONTACTS, NUMBER, WAVE_ROWS, WAVE_SET
+from .._kernels.modes.turning import DRAG, TURN_ROWS
 from ..arrays import Array
 from ..bodies.paths import Waves
 from .blocks import Blocks, ContactBlocks, PathModes, Recurrence, TurningBlocks

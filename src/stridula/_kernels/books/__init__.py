@@ -1,0 +1,1 @@
+"""After the step: ledger, records, and runs that end."""

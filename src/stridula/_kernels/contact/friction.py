@@ -1,0 +1,204 @@
+"""Laws of friction: the ratio of tangential to normal force at a slip velocity, and the motion of internal states.
+
+Parameters are read from the table of all contacts: a view of a row would cost more than the computation.
+"""
+
+import math
+
+from ..lanes.compiled import strict, strict_pasted
+from ..lanes.operations import Number, Numbers, Pair
+from ..layout import columns as at
+from ..layout.contact_values import Law
+from ..layout.laws import (
+    BRISTLE_DAMPING,
+    BRISTLE_STIFFNESS,
+    BRISTLE_VISCOUS,
+    DIRECT,
+    END,
+    EVOLVING,
+    EXPONENT,
+    FLOOR,
+    KINETIC,
+    REFERENCE,
+    REFERENCE_VELOCITY,
+    SET_VALUED,
+    SLIP_DISTANCE,
+    SLOPE,
+    STATIC,
+    VELOCITY,
+    VISCOUS,
+)
+
+
+@strict
+def set_valued(code: int) -> bool:
+    """Return whether the law of a code sticks exactly."""
+    return SET_VALUED[code]
+
+
+@strict
+def holding_ratio(law: Law, was_sticking: bool) -> Number:
+    """Return the ratio up to which a contact under a set-valued law is held."""
+    table, row = law.table, law.row
+    if law.code == at.STATIC_KINETIC and not was_sticking:
+        return table[row, KINETIC]
+    return table[row, STATIC]
+
+
+@strict
+def sliding_ratio(law: Law, speed: Number) -> Number:
+    """Return the ratio of a set-valued law in sliding at `speed`."""
+    table, row = law.table, law.row
+    if law.code == at.COULOMB:
+        return table[row, STATIC]
+    if law.code == at.STATIC_KINETIC:
+        return table[row, KINETIC]
+    if law.code == at.STRIBECK:
+        return (
+            table[row, KINETIC]
+            + (table[row, STATIC] - table[row, KINETIC])
+            * math.exp(-((speed / table[row, VELOCITY]) ** table[row, EXPONENT]))
+            + table[row, VISCOUS] * speed
+        )
+    return max(table[row, STATIC] - table[row, SLOPE] * speed, table[row, FLOOR])
+
+
+@strict
+def speed_scale(law: Law, state: Number) -> Number:
+    """Return the slip speed above which the ratio of a law begins to bend."""
+    table, row = law.table, law.row
+    if law.code == at.LINEAR_WEAKENING:
+        return table[row, END]
+    if law.code == at.STRIBECK or law.code == at.LUGRE:
+        return table[row, VELOCITY]
+    # a asinh(V / w): w = 2 V0 exp(-(reference + b ln(V0 theta / D)) / a), kept above the smallest numbers.
+    return 2.0 * table[row, REFERENCE_VELOCITY] * math.exp(-min(ageing(law, state), 600.0))
+
+
+@strict_pasted
+def bristle_limit(law: Law, speed: Number) -> Pair:
+    """Return the deflection of LuGre's bristles in steady sliding at a speed, and its derivative by the speed."""
+    table, row = law.table, law.row
+    weakened = (table[row, STATIC] - table[row, KINETIC]) * math.exp(-((speed / table[row, VELOCITY]) ** 2))
+    return (table[row, KINETIC] + weakened) / table[row, BRISTLE_STIFFNESS], -2.0 * speed / (
+        table[row, VELOCITY] * table[row, VELOCITY]
+    ) * weakened / table[row, BRISTLE_STIFFNESS]
+
+
+@strict_pasted
+def bristles_over(law: Law, speed: Number, step: Number) -> Numbers:
+    """Return the motion of LuGre's bristles over a step at constant slip speed.
+
+    Returns
+    -------
+    kept : float
+        Share of their deflection that they keep.
+    share : float
+        Share of the slip that they take up.
+    passed, passed_slope, share_slope : float
+        Slip relative to the limit deflection, its derivative by the speed, and the derivative of `share` by it.
+    """
+    limit, limit_slope = bristle_limit(law, speed)
+    passed = speed * step / limit
+    passed_slope = step / limit * (1.0 - speed * limit_slope / limit)
+    kept = math.exp(-passed)
+    share = 1.0 - 0.5 * passed if passed < 1e-8 else -math.expm1(-passed) / passed
+    share_slope = passed / 3.0 - 0.5 if passed < 1e-4 else (kept - share) / passed
+    return kept, share, passed, passed_slope, share_slope
+
+
+@strict
+def next_state(law: Law, state: Number, velocity: Number, step: Number) -> Number:
+    """Return the internal state after a step at constant slip velocity, exactly."""
+    table, row = law.table, law.row
+    speed = abs(velocity)
+    if law.code == at.LUGRE:
+        kept, share, _, _, _ = bristles_over(law, speed, step)
+        return state * kept + velocity * step * share
+    turned = speed * step / table[row, SLIP_DISTANCE]
+    if law.code == at.AGING:
+        share = 1.0 - 0.5 * turned if turned < 1e-8 else -math.expm1(-turned) / turned
+        return state * math.exp(-turned) + step * share
+    if turned == 0.0:
+        return state
+    age = speed * state / table[row, SLIP_DISTANCE]
+    return state * age ** math.expm1(-turned)
+
+
+@strict
+def state_ratio(law: Law, state: Number, velocity: Number) -> Number:
+    """Return the ratio of a law with internal state at a slip velocity."""
+    table, row = law.table, law.row
+    speed = abs(velocity)
+    if law.code == at.LUGRE:
+        rate = velocity - speed * state / bristle_limit(law, speed)[0]
+        return (
+            table[row, BRISTLE_STIFFNESS] * state
+            + table[row, BRISTLE_DAMPING] * rate
+            + table[row, BRISTLE_VISCOUS] * velocity
+        )
+    if velocity == 0.0:
+        return 0.0
+    exponent = ageing(law, state) + math.log(speed / (2.0 * table[row, REFERENCE_VELOCITY]))
+    ratio = exponent + math.log(2.0) if exponent > 30.0 else math.asinh(math.exp(exponent))
+    return math.copysign(table[row, DIRECT] * ratio, velocity)
+
+
+@strict_pasted
+def ageing(law: Law, state: Number) -> Number:
+    """Return the logarithm of the velocity of the law over that at which a contact of this state creeps."""
+    table, row = law.table, law.row
+    return (
+        table[row, REFERENCE]
+        + table[row, EVOLVING] * math.log(table[row, REFERENCE_VELOCITY] * state / table[row, SLIP_DISTANCE])
+    ) / table[row, DIRECT]
+
+
+@strict
+def ratio_after(law: Law, state: Number, velocity: Number, time: Number) -> Pair:
+    """Return the ratio of a law with internal state after some time at a slip velocity, and its derivative by it."""
+    table, row = law.table, law.row
+    speed = abs(velocity)
+    if law.code == at.LUGRE:
+        kept, share, _, by_speed, share_slope = bristles_over(law, speed, time)
+        sense = math.copysign(1.0, velocity)
+        new = state * kept + velocity * time * share
+        new_slope = -state * kept * sense * by_speed + time * (share + speed * share_slope * by_speed)
+        limit, limit_slope = bristle_limit(law, speed)
+        bent = sense * new / limit
+        rate_slope = 1.0 - bent - speed / limit * (new_slope - bent * limit_slope)
+        ratio = (
+            table[row, BRISTLE_STIFFNESS] * new
+            + table[row, BRISTLE_DAMPING] * velocity * (1.0 - bent)
+            + table[row, BRISTLE_VISCOUS] * velocity
+        )
+        return ratio, table[row, BRISTLE_STIFFNESS] * new_slope + table[row, BRISTLE_DAMPING] * rate_slope + table[
+            row, BRISTLE_VISCOUS
+        ]
+    turned = speed * time / table[row, SLIP_DISTANCE]
+    new, new_slope = state, 0.0
+    if law.code == at.AGING:
+        kept = math.exp(-turned)
+        share = 1.0 - 0.5 * turned if turned < 1e-8 else -math.expm1(-turned) / turned
+        share_slope = turned / 3.0 - 0.5 if turned < 1e-4 else (kept - share) / turned
+        new = state * kept + time * share
+        new_slope = (time * share_slope - state * kept) * time / table[row, SLIP_DISTANCE]
+    elif turned > 0.0:
+        kept, age = math.expm1(-turned), math.log(speed * state / table[row, SLIP_DISTANCE])
+        new = state * math.exp(age * kept)
+        new_slope = new * (kept / speed - age * (kept + 1.0) * time / table[row, SLIP_DISTANCE])
+    if speed == 0.0:
+        return 0.0, table[row, DIRECT] * math.exp(min(ageing(law, new), 600.0)) / (2.0 * table[row, REFERENCE_VELOCITY])
+    exponent = ageing(law, new) + math.log(speed / (2.0 * table[row, REFERENCE_VELOCITY]))
+    argument = math.exp(min(exponent, 300.0))
+    ratio = exponent + math.log(2.0) if exponent > 30.0 else math.asinh(argument)
+    bent = argument / math.sqrt(1.0 + argument * argument)
+    slope = table[row, DIRECT] * bent * (1.0 / speed + table[row, EVOLVING] / table[row, DIRECT] * new_slope / new)
+    return math.copysign(table[row, DIRECT] * ratio, velocity), slope
+
+
+@strict
+def sticking_speed(law: Law) -> Number:
+    """Return the slip speed below which a law with internal state counts as sticking."""
+    table, row = law.table, law.row
+    return table[row, VELOCITY] if law.code == at.LUGRE else table[row, REFERENCE_VELOCITY]

@@ -1,0 +1,134 @@
+"""Step 5 for one contact in space under a law other than Coulomb's: the slip goes its way as a vector."""
+
+import math
+from typing import Any
+
+from ..lanes.compiled import strict
+from ..lanes.operations import Pair
+from ..layout import columns as at
+from ..layout.contact_values import BeforeInSpace, ComplianceInSpace, FreeInSpace, Law, TouchInSpace
+from ..layout.laws import NEW_STATE, STATIC
+from .exact import PATIENCE, ROUND_OFF, SLIDING, STICKING, TRIALS, velocity_at
+from .friction import set_valued, sliding_ratio, sticking_speed
+from .lanewise import lanewise
+from .slipping_in_space import plus, ratio_over_step, ratio_with_state, size_of, sticking_forces
+
+
+@strict
+def is_prescribed(law: Law, w: ComplianceInSpace) -> bool:
+    """Return whether no force moves a contact under a set-valued law along its tangents: its slip is given."""
+    return set_valued(law.code) and w.aa == 0.0 and w.bb == 0.0
+
+
+@strict
+def ratio_under(normal: float, free: FreeInSpace, law: Law, before: BeforeInSpace, step: float) -> tuple[Any, ...]:
+    """Return ratios over a step under a normal force, past parts, new states, status and share of stick.
+
+    As `contact.ratio_under`.
+    """
+    slips, w = free.slips, free.w
+    if set_valued(law.code):
+        found = ratio_over_step(normal, free, law, before, step)
+        return found[0], found[1], before.state, found[2], found[3]
+    ratio, past, states = ratio_with_state(normal, slips, w, law, before, step)
+    moved = (
+        slips[0] + (w.an - w.aa * ratio[0] - w.ab * ratio[1]) * normal,
+        slips[1] + (w.bn - w.ba * ratio[0] - w.bb * ratio[1]) * normal,
+    )
+    slow = size_of(moved) < step * sticking_speed(law)
+    return ratio, past, states, STICKING if slow else SLIDING, 0.0
+
+
+@strict
+def slide_as_prescribed(free: FreeInSpace, law: Law, before: BeforeInSpace, step: float) -> TouchInSpace:
+    """Return the contact of bodies that no force moves along the tangents: as `contact.slide_as_prescribed`."""
+    gap, slips, strays, w = free.gap, free.slips, free.strays, free.w
+    was, last, earlier = before.status, before.slip, before.earlier_slip
+    normal, size = -gap / w.nn, size_of(slips)
+    if size == 0.0 or size_of(plus(slips, 1.0, strays)) == 0.0:
+        return TouchInSpace(normal, (0.0, 0.0), float(STICKING), 0.0)
+    way = slips[0] / size, slips[1] / size
+    back = last[0] * way[0] + last[1] * way[1]
+    velocity = velocity_at(slips[0], last[0], earlier[0], step), velocity_at(slips[1], last[1], earlier[1], step)
+    speed = size_of(velocity)
+    if was == SLIDING and back < 0.0:
+        # Sliding on until it stops, then back (5d).
+        turned = sliding_ratio(law, abs(velocity[0] * way[0] + velocity[1] * way[1]))
+        pulled = turned * (size + back) / (size - back) * normal
+    else:
+        pulled = sliding_ratio(law, speed) * normal
+        if was == SLIDING and speed > 0.0:
+            way = velocity[0] / speed, velocity[1] / speed
+    return TouchInSpace(normal, (pulled * way[0], pulled * way[1]), float(SLIDING), 0.0)
+
+
+@strict
+def slide_on_its_way(free: FreeInSpace, law: Law, before: BeforeInSpace, step: float) -> TouchInSpace:
+    """Return the contact under a law whose friction changes within the step: as `contact.slide_on_its_way`."""
+    gap, slips, strays, w = free.gap, free.slips, free.strays, free.w
+    if is_prescribed(law, w):
+        return slide_as_prescribed(free, law, before, step)
+    if set_valued(law.code) and before.status != SLIDING:
+        pressed, first, second = sticking_forces(gap, plus(slips, 1.0, strays), w)
+        if pressed > 0.0:
+            tried = ratio_under(pressed, free, law, before, step)
+            if tried[3] == STICKING:
+                most, pulled = law.table[law.row, STATIC], math.hypot(first, second)
+                lifted = most * (first * w.na + second * w.nb) / pulled if pulled > 0.0 else 0.0
+                return TouchInSpace(pressed, (first, second), float(STICKING), 1.0 if w.nn <= lifted else 0.0)
+    share = 1.0 / before.normal if before.normal > 0.0 else 0.0
+    ratio = share * before.tangential[0], share * before.tangential[1]
+    clear = w.nn - ratio[0] * w.na - ratio[1] * w.nb
+    normal = -gap / (clear if clear > 0.0 else w.nn)
+    status, last, error_before = SLIDING, 0.0, 0.0
+    low, high, below, above, settled = 0.0, math.inf, ratio, ratio, False
+    for trial in range(TRIALS):
+        ratio, _, _, status, _ = ratio_under(normal, free, law, before, step)
+        clear = w.nn - ratio[0] * w.na - ratio[1] * w.nb
+        if clear <= 0.0:
+            pressed, first, second = sticking_forces(gap, plus(slips, 1.0, strays), w)
+            return TouchInSpace(pressed, (first, second), float(STICKING), 1.0)
+        found = -gap / clear
+        error = found - normal
+        settled = abs(error) <= ROUND_OFF * found or (w.na == 0.0 and w.nb == 0.0)
+        if settled:
+            normal = found
+            break
+        if error > 0.0:
+            low, below = normal, ratio
+        else:
+            high, above = normal, ratio
+        new = found
+        if trial > 0 and error != error_before:
+            secant = normal - error * (normal - last) / (error - error_before)
+            if 0.5 * found < secant < 2.0 * found:
+                new = secant
+        if trial > PATIENCE and low > 0.0 and high < math.inf:
+            new = 0.5 * (low + high)
+        last, error_before, normal = normal, error, new
+        if normal == last:
+            break
+    if not settled and low > 0.0 and high < math.inf:
+        # The ratio jumps at this normal force, where the contact stops or slides on: between both it closes the gap.
+        lifted, more = below[0] * w.na + below[1] * w.nb, above[0] * w.na + above[1] * w.nb
+        share = min(max((w.nn + gap / normal - lifted) / (more - lifted), 0.0), 1.0) if more != lifted else 0.0
+        ratio = plus(below, share, plus(above, -1.0, below))
+    return TouchInSpace(normal, (ratio[0] * normal, ratio[1] * normal), float(status), 0.0)
+
+
+@lanewise(((0.0, 0.0), (0.0, 0.0), 0.0))
+def next_in_space(
+    touch: Pair, free: FreeInSpace, law: Law, before: BeforeInSpace, step: float
+) -> tuple[Pair, Pair, float]:
+    """Return past parts of the ratios for the next step, internal states and the share of stick of this step.
+
+    `touch` are normal force and status. Where bodies are apart, states are those of new contacts.
+    """
+    normal, status = touch
+    if status < 0.5:
+        fresh = law.table[law.row, NEW_STATE]
+        return (0.0, 0.0), (fresh, fresh if law.code == at.LUGRE else 0.0), 0.0
+    if law.code == at.COULOMB or is_prescribed(law, free.w):
+        return (0.0, 0.0), before.state, 1.0 if status == STICKING else 0.0
+    _, past, states, _, stuck = ratio_under(normal, free, law, before, step)
+    return past, states, stuck

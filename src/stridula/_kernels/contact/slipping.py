@@ -1,0 +1,305 @@
+"""Step 5c for laws whose friction changes within a step: the slip velocity on its way through the step.
+
+The tangential force of step n is the mean over the two steps about it, weighted by a triangle, which moves a mass
+exactly. Its second half lies on the way from n to n + 1, which the slip takes under its own friction: stops, reversals
+and starts lie where they are on it, and only one solution exists however steeply a law falls. The first half was found
+on the way before; a contact carries it as its `past` ratio. Times s are shares of the step, velocities are slips ``u``
+in a step: ``u' = drive - pull r`` with the ratio r of the forces, ``pull`` the slip for a ratio of one in a step.
+"""
+
+import math
+
+from ..lanes.compiled import strict, strict_pasted
+from ..lanes.operations import Number, Numbers, Pair
+from ..layout import columns as at
+from ..layout.contact_values import Before, Compliance, Free, Law
+from ..layout.laws import BRISTLE_STIFFNESS, FLOOR, KINETIC, SLIP_DISTANCE, SLOPE, STATIC, VELOCITY, VISCOUS
+from .friction import holding_ratio, next_state, ratio_after, sliding_ratio, speed_scale, state_ratio
+
+# A contact that stopped slid in this step and is at rest at its end: the next step finds it sticking.
+SEPARATED, STICKING, SLIDING, STOPPED = 0, 1, 2, 3
+# Most parts into which the way through a step is divided, and reversals on it.
+MOST_PARTS, REVERSALS = 64, 3
+# Bend of the law in a part; phase of bristles in a part; ageing in a part.
+PART, PHASE, AGEING = 0.5, 0.25, 1.0
+# First stage of the implicit rule, as a share of a part.
+STAGE = 1.0 - math.sqrt(0.5)
+# What the growth of the drive adds to the slip of that stage, so that the mean of the stages is that of the drive.
+GROWTH_AT_STAGE = (1.0 / 6.0 - 0.5 * STAGE) / (1.0 - STAGE)
+# Steps of Newton's method and trials of a bracketed search for the velocity of a part, and their relative accuracy.
+NEWTON, TRIALS, SETTLED = 8, 200, 1e-13
+
+
+@strict_pasted
+def moments(begin: Number, end: Number, first: Number, middle: Number, last: Number) -> Pair:
+    """Return the integrals of a ratio over a part with the weights ``1 - s`` and ``s``, by Simpson's rule."""
+    half, size = 0.5 * (begin + end), (end - begin) / 6.0
+    later = size * ((1.0 - begin) * first + 4.0 * (1.0 - half) * middle + (1.0 - end) * last)
+    return later, size * (begin * first + 4.0 * half * middle + end * last)
+
+
+@strict_pasted
+def ratio_of(slip: Number, sense: Number, law: Law, step: Number) -> Number:
+    """Return the signed ratio of a set-valued law at a slip, that of incipient sliding if it is against the sense."""
+    return sense * sliding_ratio(law, max(sense * slip, 0.0) / step)
+
+
+@strict_pasted
+def part_of(slip: Number, rate: Number, ratio: Number, pull: Number, law: Law, step: Number) -> Number:
+    """Return the size of the next part of the way, within which the ratio of a set-valued law hardly bends.
+
+    It depends continuously on its arguments, so that the solution does on those of the step.
+    """
+    table, row = law.table, law.row
+    if law.code == at.STATIC_KINETIC:
+        return 1.0
+    scale, size = speed_scale(law, 0.0) * step, abs(slip)
+    if law.code == at.LINEAR_WEAKENING:
+        steep = table[row, SLOPE] / step if ratio > table[row, FLOOR] else 0.0
+    else:
+        viscous = table[row, VISCOUS] / step
+        steep = (ratio - table[row, KINETIC] - viscous * size) / scale + viscous
+    part = PART / (abs(rate) / (scale + size) + pull * steep + PART)
+    return max(part, 1.0 / MOST_PARTS)
+
+
+@strict
+def slide_through(
+    slip: Number, begin: Number, drive: Pair, pull: Number, sense: Number, law: Law, step: Number
+) -> Numbers:
+    """Slide from a time of the step on, under a set-valued law.
+
+    `drive` are its value at the beginning of the step and its change over it.
+
+    Returns
+    -------
+    later, past : float
+        Ratio of the rest of the step, weighted for this step and for the next.
+    stuck : float
+        Share of the step for which the contact is at rest at its end.
+    """
+    later, past, held = 0.0, 0.0, holding_ratio(law, True)
+    for _ in range(REVERSALS):
+        stops = False
+        while begin < 1.0:
+            r1 = ratio_of(slip, sense, law, step)
+            rate = drive[0] + drive[1] * begin - pull * r1
+            size = part_of(slip, rate, abs(r1), pull, law, step)
+            end = min(begin + size, 1.0)
+            size = end - begin
+            middle = drive[0] + drive[1] * (begin + 0.5 * size)
+            r2 = ratio_of(slip + 0.5 * size * rate, sense, law, step)
+            r3 = ratio_of(slip + 0.5 * size * (middle - pull * r2), sense, law, step)
+            r4 = ratio_of(slip + size * (middle - pull * r3), sense, law, step)
+            new = slip + size * (middle - pull * (r1 + 2.0 * (r2 + r3) + r4) / 6.0)
+            if sense * new < 0.0:
+                # It stops on the parabola with this beginning, slope and end.
+                bent = (new - slip - rate * size) / (size * size)
+                under = math.sqrt(max(rate * rate - 4.0 * bent * slip, 0.0))
+                after = -2.0 * slip / (rate - sense * under) if slip != 0.0 else 0.0
+                after = min(max(after, 0.0), size)
+                half = slip + 0.5 * after * (rate + 0.5 * after * bent)
+                at_half, at_end = ratio_of(half, sense, law, step), ratio_of(0.0, sense, law, step)
+                more, less = moments(begin, begin + after, r1, at_half, at_end)
+                later, past, begin, stops = later + more, past + less, begin + after, True
+                break
+            more, less = moments(begin, end, r1, 0.5 * (r2 + r3), r4)
+            later, past, begin, slip = later + more, past + less, end, new
+        if not stops:
+            return later, past, 0.0
+        first, last = drive[0] + drive[1] * begin, drive[0] + drive[1]
+        if max(abs(first), abs(last)) <= held * pull and pull > 0.0:
+            more, less = moments(begin, 1.0, first / pull, 0.5 * (first + last) / pull, last / pull)
+            return later + more, past + less, 1.0 - begin
+        if abs(first) <= held * pull:
+            # It is held until its drive has grown.
+            end = begin + (1.0 - begin) * (math.copysign(held * pull, last) - first) / (last - first)
+            at_end = math.copysign(held, last)
+            more, less = moments(begin, end, first / pull, 0.5 * (first / pull + at_end), at_end)
+            later, past, begin, first = later + more, past + less, end, last
+        slip, sense = 0.0, 1.0 if first > 0.0 else -1.0
+    return later, past, 0.0
+
+
+@strict_pasted
+def broken_before(
+    earlier: float, grows: float, held: Number, sliding: float, sense: Number
+) -> tuple[float, float, float]:
+    """Return the past part of the ratio of a stick that broke within the last step, and its slip for a pull of one.
+
+    The ratio grew from `earlier` until it was `held` and has been that of `sliding` since. The last value is the share
+    of the last step that slid, weighted.
+    """
+    broke = min(max((sense * held - earlier) / grows, 0.0), 1.0) if grows != 0.0 else 0.0
+    stuck, left = 0.5 * broke * broke, 0.5 * (1.0 - broke * broke)
+    past = stuck * earlier + grows * broke**3 / 3.0 + left * sense * sliding
+    return past, grows * (1.0 - broke**3) / 3.0 + left * (earlier - sense * sliding), left
+
+
+@strict_pasted
+def ratio_of_stick(gap: Number, missed: Number, w: Compliance, otherwise: Number) -> Number:
+    """Return the ratio of the forces that close the gap and undo a slip, another one if they pull."""
+    pressed, held = w.nt * missed - w.tt * gap, w.nn * missed - w.tn * gap
+    return held / pressed if pressed * (w.nn * w.tt - w.nt * w.tn) > 0.0 else otherwise
+
+
+@strict
+def ratio_over_step(
+    normal: Number, free: Free, law: Law, before: Before, step: Number
+) -> tuple[Number, Number, int, Number]:
+    """Return the ratio of forces over a step under a set-valued law, its past part, status and share of stick.
+
+    `normal` is the normal force, `gap` and `slip` those without the forces of this contact; other arguments as in
+    `contact.solve_contact`. A contact that sticks does so throughout the step. Whether it does, and when it breaks,
+    follows from the forces with which it would stick; what it is driven by after that from its normal force.
+    """
+    gap, slip, strayed, w = free.gap, free.slip, free.strayed, free.w
+    was, last, past = before.status, before.slip, before.past
+    pull, moved = w.tt * normal, slip + w.tn * normal
+    held = holding_ratio(law, was == STICKING and free.let_go <= 0.5)
+    driven = (moved + strayed) / pull if pull > 0.0 else math.copysign(math.inf, moved + strayed)
+    needed = driven if was == SLIDING else ratio_of_stick(gap, slip + strayed, w, driven)
+    if was == STICKING and last == 0.0:
+        # At rest for a step or more: the force grows through the step as it did in the last one.
+        earlier = before.tangential / before.normal if before.normal > 0.0 else needed
+        grows = needed - earlier
+        if free.let_go <= 0.5 and abs(needed) <= held and abs(needed + grows) <= held:
+            return needed, 0.5 * needed + grows / 3.0, STICKING, 1.0
+        drive = (pull * driven, pull * grows)
+        if abs(needed) > held:
+            sense = 1.0 if needed > 0.0 else -1.0
+            slides = sense * ratio_of(0.0, sense, law, step)
+            past, begun, left = broken_before(earlier, grows, held, slides, sense)
+            begun += left * (driven - needed)
+            more, rest, stuck = slide_through(pull * begun, 0.0, drive, pull, sense, law, step)
+            return past + more, rest, STOPPED if stuck > 0.0 else SLIDING, stuck
+        sense = 1.0 if needed + grows > 0.0 else -1.0
+        broke = min(max((sense * held - needed) / grows, 0.0), 1.0) if abs(needed) < held else 0.0
+        first, less = moments(0.0, broke, needed, needed + 0.5 * broke * grows, needed + broke * grows)
+        more, rest, stuck = slide_through(0.0, broke, drive, pull, sense, law, step)
+        ratio = 0.5 * needed - grows / 6.0 + first + more
+        return ratio, less + rest, STOPPED if stuck > 0.0 else SLIDING, broke + stuck
+    if was == STICKING:
+        # It came to rest within the last step.
+        short = 2.0 * (needed - past)
+        if free.let_go <= 0.5 and abs(short) <= held:
+            return needed, 0.5 * needed, STICKING, 1.0
+        sense = 1.0 if short > 0.0 else -1.0
+        drive = (2.0 * pull * (driven - past), 0.0)
+        more, rest, stuck = slide_through(0.0, 0.0, drive, pull, sense, law, step)
+        return past + more, rest, STOPPED if stuck > 0.0 else SLIDING, stuck
+    begun = 0.5 * (last + moved)
+    if was != SLIDING:
+        # It lands: half of its force acts before the step.
+        if free.let_go <= 0.5 and abs(needed) <= held:
+            return needed, 0.5 * needed, STICKING, 1.0
+        sense = 1.0 if begun > 0.0 else -1.0
+        past = 0.5 * ratio_of(begun, sense, law, step)
+    slip_at_step, change = begun - pull * past, moved - last
+    sense = 1.0 if slip_at_step > 0.0 or (slip_at_step == 0.0 and change > 0.0) else -1.0
+    more, rest, stuck = slide_through(slip_at_step, 0.0, (change, 0.0), pull, sense, law, step)
+    return past + more, rest, STOPPED if stuck > 0.0 else SLIDING, stuck
+
+
+@strict
+def velocity_after(free: Number, pulled: Number, guess: Number, law: Law, state: Number, time: Number) -> Pair:
+    """Return the slip velocity ``v = free - pulled r`` and the ratio r of a law with internal state after some time.
+
+    Newton's method from a guess, then a bracketed search on the scale ``sinh(y)``, so that creep and sliding share one
+    scale.
+    """
+    velocity = guess
+    for _ in range(NEWTON):
+        ratio, slope = ratio_after(law, state, velocity, time)
+        steepness = 1.0 + pulled * slope
+        if not steepness > 0.0:
+            break
+        change = (free - pulled * ratio - velocity) / steepness
+        if abs(change) <= SETTLED * abs(velocity + change):
+            return velocity + change, ratio + slope * change
+        if law.code != at.LUGRE and velocity * (velocity + change) <= 0.01 * velocity * velocity:
+            break
+        velocity += change
+    sense = 1.0 if free - pulled * ratio_after(law, state, 0.0, time)[0] >= 0.0 else -1.0
+    scale, reach = speed_scale(law, state), max(abs(free), 1e-300)
+    low, high = 0.0, 0.0
+    for _ in range(TRIALS):
+        velocity = sense * reach
+        high = math.asinh(reach / scale)
+        if sense * (velocity - free + pulled * ratio_after(law, state, velocity, time)[0]) >= 0.0:
+            break
+        low, reach = high, 2.0 * reach
+    for _ in range(TRIALS):
+        if high - low <= 1e-15 * high:
+            break
+        y = 0.5 * (low + high)
+        velocity = sense * scale * math.sinh(y)
+        if sense * (velocity - free + pulled * ratio_after(law, state, velocity, time)[0]) >= 0.0:
+            high = y
+        else:
+            low = y
+    velocity = sense * scale * math.sinh(0.5 * (low + high))
+    return velocity, ratio_after(law, state, velocity, time)[0]
+
+
+@strict
+def parts_with_state(slip: Number, drive: Number, pull: Number, law: Law, step: Number) -> int:
+    """Return the number of parts of the way under a law with internal state."""
+    table, row = law.table, law.row
+    if law.code == at.LUGRE:
+        change = (abs(drive) + pull * table[row, STATIC]) / (4.0 * table[row, VELOCITY] * step)
+        count = 1.0 + max(math.sqrt(pull * table[row, BRISTLE_STIFFNESS]) / PHASE, change)
+    else:
+        count = 2.0 + (abs(slip) + abs(drive)) / (AGEING * table[row, SLIP_DISTANCE])
+    return int(min(count, float(MOST_PARTS)))
+
+
+@strict_pasted
+def changed_to(normal: Number, last: Number) -> Number:
+    """Return the normal force that the friction of the last step is taken to have changed to in this one.
+
+    A change that goes on is part of the growth of the drive; an impulse would not go on, so that a change counts for at
+    most the smaller of both forces.
+    """
+    most = min(normal, last)
+    return min(max(normal, last - most), last + most)
+
+
+@strict
+def ratio_with_state(normal: Number, slip: Number, w: Compliance, law: Law, before: Before, step: Number) -> Numbers:
+    """Return the ratio of forces over a step under a law with internal state, its past part, and the new state.
+
+    Each part takes the diagonally implicit rule of two stages and second order that forgets what a stiff contact would
+    not keep: a contact that creeps takes its velocity from its friction, whatever its last one was. The drive goes on
+    through the step as it changed in the last one, in which it was the change of the slip and the ratio: a law whose
+    velocity depends on the logarithm of the force would notice its jumps.
+    """
+    was, last, state, past = before.status, before.slip, before.state, before.past
+    pull, moved = w.tt * normal, slip + w.tn * normal
+    begun, drive, grows = 0.5 * (last + moved), moved - last, 0.0
+    if was == SEPARATED:
+        past = 0.5 * state_ratio(law, state, begun / step)
+    elif before.normal > 0.0:
+        grows = (
+            drive
+            - (last - before.earlier_slip)
+            - w.tt * changed_to(normal, before.normal) * before.tangential / before.normal
+        )
+    slip_now = begun - pull * past - grows / 6.0
+    count = parts_with_state(slip_now, drive, pull, law, step)
+    size, later, rest, velocity = 1.0 / count, 0.0, 0.0, slip_now / step
+    time, pulled = STAGE * size * step, STAGE * size * pull / step
+    for k in range(count):
+        begin, left = k * size, 1.0 - (k + 1.0) * size
+        driven = drive + grows * begin
+        free = slip_now + size * (STAGE * driven + GROWTH_AT_STAGE * size * grows)
+        velocity, first = velocity_after(free / step, pulled, velocity, law, state, time)
+        state = next_state(law, state, velocity, size * step - time)
+        free = slip_now + size * (driven + 0.5 * size * grows - (1.0 - STAGE) * pull * first)
+        velocity, second = velocity_after(free / step, pulled, velocity, law, state, time)
+        state = next_state(law, state, velocity, time)
+        # Weights with which the mean of the slip over the part is that of its stages.
+        more = (1.0 - STAGE) * (2.0 * STAGE * size + left) * first + STAGE * (STAGE * size + left) * second
+        later, rest = later + size * more, rest + size * ((1.0 - STAGE) * first + STAGE * second - more)
+        slip_now = velocity * step
+    return past + later, rest, state

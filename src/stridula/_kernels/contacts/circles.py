@@ -1,0 +1,108 @@
+"""Contacts that move round a body along a circle, a closed path.
+
+After a contact has advanced by an angle, its rows on a pair of order n are its initial rows, turned by n times that
+angle. Its slip is relative to the material under it, hence evaluated with the rows at the new place.
+"""
+
+import math
+
+from ..contact.in_space import is_second
+from ..lanes.compiled import inlined
+from ..lanes.operations import Array, Number, Pair, Runs, fused, held, hold, load, read, spread, store, total
+from ..layout import columns as at
+from ..layout.parts import Parts
+from ..layout.rows import CONTACTS, POSITION, Q
+from ..modes.blocks import product, two_products
+from ..modes.turning import (
+    ADVANCE,
+    ADVANCED,
+    BEGIN,
+    EARLIER,
+    END,
+    OF_CONTACT,
+    ORDER,
+    PASSED,
+    RISE,
+    RISEN,
+    small_turn,
+)
+from ..modes.waves import sine_and_cosine_of_half_turns
+
+
+@inlined
+def set_rows_at(
+    rows: Array, at_start: Array, turns: Array, begin: int, end: int, i: int, angle: Number, runs: Runs
+) -> None:
+    """Set the rows of contact `i` and of its second tangent at an angle from its initial place (step 2)."""
+    for k in range(begin, end, 2):
+        s, c = sine_and_cosine_of_half_turns(load(turns, k, ORDER, runs) * (angle / math.pi))
+        for row in (2 * i, 2 * i + 1, 2 * i + 3):
+            first, second = load(at_start, k, row, runs), load(at_start, k + 1, row, runs)
+            store(rows, k, CONTACTS + row, runs, fused(c, first, -s * second))
+            store(rows, k + 1, CONTACTS + row, runs, fused(s, first, c * second))
+
+
+@inlined
+def product_of(rows: Array, row: int, others: Array, other: int, begin: int, end: int, runs: Runs) -> Number:
+    """Return the product of a row with one of another array over a span of blocks."""
+    value = spread(0.0)
+    for k in range(begin, end):
+        value = fused(load(rows, k, row, runs), load(others, k, other, runs), value)
+    return total(value, runs.zero)
+
+
+@inlined
+def go_round(i: int, moved: Pair, parts: Parts, n: int, runs: Runs) -> Pair:
+    """Advance contact `i` along its circle (steps 2 and 3); return what its body adds to the gap there, and its slip.
+
+    `moved` are its abscissa at the end of the step, and the advance of the surface along the circle by turning.
+    """
+    place, track = moved
+    paths, contacts, turning, motion = parts.paths, parts.contacts, parts.turning, parts.imposed.motion
+    rows, turns, body = parts.modes.rows, turning.rows, paths.body_of[i]
+    begin, end = turning.spans[body, BEGIN], turning.spans[body, END]
+    if not is_second(contacts.codes, i):
+        base = i * at.CONTACT_CONSTANTS
+        phase = held(contacts.constants, base + at.ALONG_PHASE, runs)
+        angle = fused(held(contacts.constants, base + at.ALONG, runs), place, phase)
+        set_rows_at(rows, paths.at_start, turns, begin, end, i, angle, runs)
+    row, first = CONTACTS + 2 * i, begin
+    for s in range(paths.first_span[i], paths.first_span[i + 1]):
+        if paths.spans[s, at.KIND] == at.ROUND:
+            first = paths.spans[s, at.BEGIN]
+    rise, slip = two_products(rows, row, POSITION, first, end, runs)
+    # The present place of the material that will be under the contact.
+    slip -= product(rows, row + 1, Q, first, begin, runs)
+    slip -= product_of(rows, row + 1, turns, PASSED, begin, end, runs)
+    before = read(
+        motion, n - 1 if n > 0 else 0, (i * at.MOTIONS + at.TRACK_MOTION) * runs.columns + runs.first, runs.zero
+    )
+    slip += (place - held(parts.state.carried, i * at.CARRIED + at.ABSCISSA, runs)) - (track - before)
+    here = i * OF_CONTACT
+    hold(turning.contacts, here + RISE, runs, product_of(rows, row, turns, RISEN, begin, end, runs))
+    hold(turning.contacts, here + ADVANCE, runs, product_of(rows, row + 1, turns, ADVANCED, begin, end, runs))
+    return rise, slip
+
+
+@inlined
+def convected(i: int, place: Number, parts: Parts, runs: Runs) -> Number:
+    """Return the convection work of contact `i`, from the slope of its body along the circle.
+
+    It is the change of its rows over the last two steps, times the displacements two steps ago.
+    """
+    contacts, turning, carried = parts.contacts, parts.turning, parts.state.carried
+    rows, turns, row, body, value = (
+        parts.modes.rows,
+        turning.rows,
+        CONTACTS + 2 * i,
+        parts.paths.body_of[i],
+        spread(0.0),
+    )
+    rate = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.ALONG, runs)
+    angle = rate * (place - held(carried, i * at.CARRIED + at.ABSCISSA_BEFORE, runs))
+    for k in range(turning.spans[body, BEGIN], turning.spans[body, END], 2):
+        versine, sine = small_turn(load(turns, k, ORDER, runs) * angle)
+        first, second = load(rows, k, row, runs), load(rows, k + 1, row, runs)
+        value = fused(fused(versine, first, -sine * second), load(turns, k, EARLIER, runs), value)
+        value = fused(fused(versine, second, sine * first), load(turns, k + 1, EARLIER, runs), value)
+    return -0.5 * held(contacts.now, i * at.IN_STEP + at.NORMAL_NOW, runs) * total(value, runs.zero)

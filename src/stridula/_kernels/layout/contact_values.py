@@ -1,0 +1,192 @@
+"""Values that belong to a contact within a step, by name."""
+
+from typing import NamedTuple
+
+from ..lanes.operations import Array, Number, Pair
+
+
+class Compliance(NamedTuple):
+    """Relative displacement of a contact for unit forces [m/N], the first letter that of the displacement."""
+
+    nn: Number
+    nt: Number
+    tn: Number
+    tt: Number
+
+
+class ComplianceInSpace(NamedTuple):
+    """The same along the normal and two tangents a and b."""
+
+    nn: Number
+    na: Number
+    nb: Number
+    an: Number
+    aa: Number
+    ab: Number
+    bn: Number
+    ba: Number
+    bb: Number
+
+
+class Law(NamedTuple):
+    """The law of friction of a contact.
+
+    Attributes
+    ----------
+    code : int
+        Code of the law, see `columns`.
+    table : array
+        Parameters of the laws of all contacts, with the columns of `laws`.
+    row : int
+        Row of this contact, that of the first of several runs.
+    at_rest : number
+        Ratio of forces up to which it may rest.
+    """
+
+    code: int
+    table: Array
+    row: int
+    at_rest: Number
+
+
+class Free(NamedTuple):
+    """Motion of a contact in a step without its own forces, and what these change.
+
+    Attributes
+    ----------
+    gap : number
+        Gap at the end of the step [m].
+    slip : number
+        Motion of the tip along the track in the step [m].
+    strayed : number
+        Distance of a stick from its anchor [m].
+    w : Compliance
+        Displacement for unit forces.
+    let_go : number
+        Above 0.5 where the contact is no longer held, and above 0 where no reversal within the step is sought.
+    """
+
+    gap: Number
+    slip: Number
+    strayed: Number
+    w: Compliance
+    let_go: Number
+
+
+class Tried(NamedTuple):
+    """Abscissa, gap and slip of the only contact in a step without its forces [m], and its compliance."""
+
+    place: Number
+    gap: Number
+    slip: Number
+    w: Compliance
+
+
+class Done(NamedTuple):
+    """Work of the only contact in a step, loss to damping [J], and force along its path by the slope of that."""
+
+    work: Number
+    lost: Number
+    slope: Number
+
+
+class FreeInSpace(NamedTuple):
+    """The same along both tangents, and `guess`, the tangential forces from which their direction is sought."""
+
+    gap: Number
+    slips: Pair
+    strays: Pair
+    w: ComplianceInSpace
+    let_go: Number
+    guess: Pair
+
+
+class Before(NamedTuple):
+    """What a contact carries from the steps before.
+
+    Attributes
+    ----------
+    status : number
+        Status of the last step.
+    slip, earlier_slip : number
+        Slip of the last step, and of the one before [m].
+    state : number
+        Internal state of the law.
+    normal, tangential : number
+        Forces of the last step [N].
+    past : number
+        Part of the ratio of forces that lies before the step, see `slipping`.
+    """
+
+    status: Number
+    slip: Number
+    earlier_slip: Number
+    state: Number
+    normal: Number
+    tangential: Number
+    past: Number
+
+
+class BeforeInSpace(NamedTuple):
+    """The same along both tangents."""
+
+    status: Number
+    slip: Pair
+    earlier_slip: Pair
+    state: Pair
+    normal: Number
+    tangential: Pair
+    past: Pair
+
+
+class Yielding(NamedTuple):
+    """How a contact yields along its normal; a rigid one has no stiffness.
+
+    Attributes
+    ----------
+    stiffness, exponent : number
+        Force for an indentation of one, and the power of the indentation.
+    damping, rate : number
+        Dashpot [N s/m], and damping rate over the force [s/m].
+    reach : number
+        Size of its sawtooth under unit forces [m/N], see `pressing`.
+    """
+
+    stiffness: Number
+    exponent: Number
+    damping: Number
+    rate: Number
+    reach: Number
+
+
+class Indentations(NamedTuple):
+    """Indentations of a contact at the last three steps [m], the latest first."""
+
+    now: Number
+    before: Number
+    earlier: Number
+
+
+class Touch(NamedTuple):
+    """Forces of a contact in a step [N], its status, and whether it jams."""
+
+    normal: Number
+    tangential: Number
+    status: Number
+    jammed: Number
+
+
+class TouchInSpace(NamedTuple):
+    """The same with the forces along both tangents."""
+
+    normal: Number
+    tangential: Pair
+    status: Number
+    jammed: Number
+
+
+class Moved(NamedTuple):
+    """Gap of a contact at the end of a step and slip in it, under all forces [m]."""
+
+    gap: Number
+    slip: Number
