@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from kernels.general_twin import curve, has_state, held_up_to, ratio_with_state
+from kernels.twin.laws import curve, has_state, held_up_to, ratio_with_state
 
 import stridula as st
 from stridula.lowering import assemble

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as some
-from kernels.way_in_space_twin import limit
+from kernels.twin.laws import limit
 from physics.cases import SCHEMES
 
 import stridula as st

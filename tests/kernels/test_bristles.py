@@ -10,8 +10,9 @@ import pytest
 from physics.cases import SCHEME_NAMES
 
 import stridula as st
-from kernels.general_twin import before_start, central, exact
-from kernels.way_in_space_twin import SLIDING, closing, on_bristles, sliding
+from kernels.twin.modes import before_start, central, exact
+from kernels.twin.way import SLIDING
+from kernels.twin.way_in_space import closing, on_bristles, sliding
 from stridula._kernels.layout import columns as at
 from stridula._kernels.layout.laws import LAW_COLUMNS
 from stridula.integration.contact_solve import GaussSeidel

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as some
 
-from kernels.twin import contact_states
+import stridula as st
+from kernels.twin import states, way
 from stridula._kernels.contact import solves
 from stridula._kernels.contact.exact import solve_contact
 from stridula._kernels.layout import columns as layout
@@ -33,6 +34,13 @@ def compliance(turn, flat):
     w = rotation @ np.diag([1.0, flat]) @ rotation.T
     w[1, 0] = w[0, 1]
     return w
+
+
+def contact_states(gap, slip, w, mu, last_slip=0.0):
+    """Every consistent state of the twin, as status, normal and tangential force."""
+    before = way.Before(st.Coulomb(mu), SLIDING if last_slip else SEPARATED, last_slip)
+    found = states.consistent(states.Contacts([before], [way.Free(gap, slip, 0.0, w)], w, 1.0))
+    return [tuple(touch[:3]) for _, (touch,) in found]
 
 
 def coulomb(gap, slip, w, mu, last_slip=0.0):

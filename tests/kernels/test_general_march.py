@@ -1,8 +1,4 @@
-"""The compiled march against its general twin, step by step, for everything that a system may hold.
-
-The twin follows the two-position form with one matrix for all modes; see `test_march` for its loss by cancellation:
-1e-8 of the peak for positions and energies, 1e-6 for forces. A height is compared on the scale of all displacements.
-"""
+"""The compiled march against the twin, step by step, for everything that a system may hold."""
 
 from __future__ import annotations
 
@@ -11,28 +7,17 @@ from functools import cache
 
 import numpy as np
 import pytest
-from physics.cases import CASES, SCHEMES, STEP
+from physics.cases import SCHEMES
 
 import stridula as st
-from kernels import general_twin as twin
-from kernels import systems
+from kernels import systems, twin
+from kernels.agreement import disagreements
 from kernels.systems import SYSTEMS
+from kernels.twin import laws
+from kernels.twin.contact import Contact
 
 STEPS = 1000
 BOTH = [pytest.param(SCHEMES[0], twin.central, id="central"), pytest.param(SCHEMES[1], twin.exact, id="exact")]
-COLUMNS = {
-    "normal_force": ("normal", 1e-6),
-    "tangential_force": ("tangential", 1e-6),
-    "contact_position": ("position", 1e-8),
-    "kinetic_and_elastic": ("stored", 1e-8),
-    "drive_work": ("drive", 1e-8),
-    "contact_work": ("contact", 1e-6),
-    "friction_loss": ("friction", 1e-6),
-    "convection_work": ("convection", 1e-6),
-    "damping_loss": ("damping", 1e-8),
-    "friction_state": ("state", 1e-8),
-}
-ENERGIES = ("contact_work", "friction_loss", "convection_work", "damping_loss")
 
 
 def both(system, scheme, form, step, steps=STEPS):
@@ -46,41 +31,6 @@ def both_of(name, exact=True):
     make, step = SYSTEMS[name]
     scheme, form = BOTH[exact].values
     return both(make(), scheme, form, step)
-
-
-def disagreements(run, trail) -> dict[str, float]:
-    """Largest difference of each recorded column over its peak, where above its tolerance."""
-    found = {}
-    # A loss of nothing is round-off of the energy in play.
-    least = 1e-14 * max(np.abs(trail.stored).max(), np.abs(trail.drive).max())
-    for name, (attribute, tolerance) in COLUMNS.items():
-        if name not in run:
-            continue
-        expected = getattr(trail, attribute)
-        values = run[name].values.reshape(expected.shape)
-        peak = np.abs(expected[np.isfinite(values)]).max()
-        off = np.nanmax(np.abs(values - expected))
-        if off > tolerance * peak + least * (name in ENERGIES):
-            found[name] = off / max(peak, 1e-300)
-    # A height may be zero throughout: relative to all displacements.
-    moved = max(np.abs(trail.height).max(), np.ptp(trail.position))
-    for name in ("gap", "contact_height"):
-        expected = trail.gap if name == "gap" else trail.height
-        off = np.abs(run[name].values.reshape(expected.shape) - expected).max()
-        if off > 1e-8 * moved:
-            found[name] = off / moved
-    status = run.status.values.reshape(trail.status.shape)
-    if np.any(status != trail.status):
-        found["status"] = float(np.mean(status != trail.status))
-    # A share is a ratio of the distances of a gap or a force from its border, down to a hundredth of the peaks of
-    # COLUMNS.
-    off = np.abs(run.status_share.values.reshape(trail.share.shape) - trail.share).max()
-    if off > 1e-4:
-        found["status_share"] = off
-    landings = run.landings.values.reshape(trail.landings.shape)
-    if np.any(landings != trail.landings):
-        found["landings"] = float(np.mean(landings != trail.landings))
-    return found
 
 
 @pytest.mark.parametrize("exact", [pytest.param(False, id="central"), pytest.param(True, id="exact")])
@@ -111,16 +61,6 @@ def test_the_systems_visit_all_states():
     for kind in (st.Stribeck, st.LinearWeakening):
         assert np.all(shares[kind][1:] > 0.1)
     assert shares[st.ExponentialWeakening][2] > 0.1
-
-
-@pytest.mark.parametrize(("scheme", "form"), BOTH)
-@pytest.mark.parametrize("name", CASES)
-def test_both_twins_follow_the_same_model(name, scheme, form):
-    """The cases of one slider on one beam, which `twin` marches mode by mode, by matrices."""
-    system = CASES[name]()
-    system = replace(system, contact=replace(system.contact, gap=1e-8))
-    run, trail = both(system, scheme, form, STEP, 300)
-    assert disagreements(run, trail) == {}
 
 
 def slightly(change, system):
@@ -181,13 +121,13 @@ def test_comparison_detects_wrong_motion_in_the_plane(wrong, monkeypatch):
         sheet = make().contacts[0].track
         monkeypatch.setattr(st.ModalPlate, "polarisations", abs(sheet.polarisations))
     else:
-        right = twin.Touch.rows
+        right = Contact.traces_at
 
-        def rows(self, x):
-            normal, tangent, slopes = right(self, x)
-            return normal, tangent, slopes * [[0.0], [1.0]]
+        def without_slopes(self, x):
+            traces = right(self, x)
+            return traces._replace(slopes=traces.slopes * [[0.0], [1.0]])
 
-        monkeypatch.setattr(twin.Touch, "rows", rows)
+        monkeypatch.setattr(Contact, "traces_at", without_slopes)
     found = disagreements(run, twin.march(make(), twin.exact, step, STEPS))
     assert "convection_work" in found
     assert (wrong == "slopes") == (len(found) == 1)
@@ -219,12 +159,12 @@ def test_comparison_distinguishes_the_motion_of_bristles_from_eulers(monkeypatch
     """Negative control: bristles that move on by explicit Euler's rule."""
 
     def by_euler(law, state, v, h):
-        limit = twin.curve(law, abs(v)) / law.stiffness
+        limit = laws.curve(law, abs(v)) / law.stiffness
         return state + h * (v - abs(v) * state / limit)
 
     run, trail = both_of("mass on a belt, bristles")
     assert disagreements(run, trail) == {}
-    monkeypatch.setattr(twin.LAWS, "state_after", by_euler)
+    monkeypatch.setattr(laws, "state_after", by_euler)
     assert disagreements(run, twin.march(systems.oscillator(systems.BRISTLES), twin.exact, 2e-4, STEPS))
 
 

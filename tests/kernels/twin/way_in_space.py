@@ -1,4 +1,4 @@
-"""A slow twin of the slip on its way through a step in space: `way_twin` for vectors of both tangents."""
+"""The slip on its way through a step in space: `way` for vectors of both tangents (step 5c)."""
 
 from __future__ import annotations
 
@@ -6,14 +6,9 @@ import numpy as np
 from scipy.optimize import root
 
 import stridula as st
-from kernels.general_twin import curve
-from kernels.way_twin import changed
 
-SEPARATED, STICKING, SLIDING = 0, 1, 2
-SHARE = 1 - np.sqrt(0.5)
-INNER = np.array([[SHARE, 0.0], [1 - SHARE, SHARE]])
-# The growth of the drive, divided so that creep under it has the slip of its stages.
-GROWTH = np.array([(1 / 6 - SHARE / 2) / (1 - SHARE), 0.5])
+from .laws import curve, limit
+from .way import GROWTH, INNER, SEPARATED, SHARE, changed, weighted
 
 
 def bristles_after(law, z, v, h):
@@ -23,11 +18,6 @@ def bristles_after(law, z, v, h):
     if rate * h < 1e-9:
         return z + (v - rate * z) * h
     return v / rate + (z - v / rate) * np.exp(-rate * h)
-
-
-def limit(law, speed):
-    """The coefficient of steady sliding without its viscous part."""
-    return law.kinetic + (law.static - law.kinetic) * np.exp(-((speed / law.velocity) ** 2))
 
 
 def bristles_ratio(law, z, v):
@@ -45,13 +35,6 @@ def solved(error, start):
         if np.abs(error(size * found.x)).max() < 1e-12 * size:
             return size * found.x
     raise AssertionError("no velocity found")
-
-
-def weighted(size, begin, ratios):
-    """The ratios of both stages of a part, weighted for this step and for the next."""
-    velocities = INNER[1]
-    weights = size**2 * velocities @ INNER + size * velocities * (1 - begin - size)
-    return weights @ ratios, (size * velocities - weights) @ ratios
 
 
 def on_bristles(law, before, slip, w, h, normal):

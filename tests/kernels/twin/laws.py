@@ -1,0 +1,71 @@
+"""The laws of friction, each as its equation."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import stridula as st
+
+
+def has_state(law):
+    return isinstance(law, (st.LuGre, st.RateAndState))
+
+
+def held_up_to(law, was_sticking):
+    """Ratio of forces up to which a contact sticks."""
+    if isinstance(law, st.Coulomb):
+        return law.coefficient
+    if isinstance(law, st.StaticKinetic) and not was_sticking:
+        return law.kinetic
+    return law.static
+
+
+def curve(law, speed):
+    """Ratio of forces in sliding at `speed`."""
+    if isinstance(law, st.Coulomb):
+        return law.coefficient
+    if isinstance(law, st.StaticKinetic):
+        return law.kinetic
+    if isinstance(law, st.LinearWeakening):
+        return max(law.static - law.slope * speed, law.kinetic)
+    exponent, viscous = (law.exponent, law.viscous) if isinstance(law, st.Stribeck) else (1.0, 0.0)
+    return law.kinetic + (law.static - law.kinetic) * np.exp(-((speed / law.velocity) ** exponent)) + viscous * speed
+
+
+def limit(law, speed):
+    """Ratio of forces in steady sliding under LuGre's law, without its viscous part."""
+    return law.kinetic + (law.static - law.kinetic) * np.exp(-((speed / law.velocity) ** 2))
+
+
+def state_after(law, state, v, h):
+    """Internal state after `h` at the constant slip velocity `v`."""
+    speed = abs(v)
+    if isinstance(law, st.LuGre):
+        end = limit(law, v) / law.stiffness
+        if speed * h < 1e-9 * end:
+            return state + (v - speed * state / end) * h
+        return np.sign(v) * end + (state - np.sign(v) * end) * np.exp(-speed * h / end)
+    distance = law.slip_distance
+    if law.evolution == "aging":
+        if speed * h < 1e-9 * distance:
+            return state + (1 - speed * state / distance) * h
+        return distance / speed + (state - distance / speed) * np.exp(-speed * h / distance)
+    if speed == 0:
+        return state
+    return distance / speed * (speed * state / distance) ** np.exp(-speed * h / distance)
+
+
+def ratio_with_state(law, state, v):
+    """Ratio of forces at slip velocity `v`."""
+    if isinstance(law, st.LuGre):
+        rate = v - abs(v) * state * law.stiffness / limit(law, v)
+        return law.stiffness * state + law.damping * rate + law.viscous * v
+    exponent = (law.reference + law.b * np.log(law.velocity * state / law.slip_distance)) / law.a
+    return law.a * np.arcsinh(v / (2 * law.velocity) * np.exp(exponent))
+
+
+def state_of_new(law):
+    """Internal state of a contact that closes."""
+    if isinstance(law, st.RateAndState):
+        return law.slip_distance / law.velocity if law.initial_state is None else law.initial_state
+    return 0.0

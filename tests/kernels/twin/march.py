@@ -1,0 +1,151 @@
+"""The march of the twin, in the six steps of *Contact in one step*, and its ledger."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+
+import stridula as st
+
+from .contact import Contact
+from .modes import Bodies, before_start, central
+from .states import Contacts, forces_of, solve
+from .way import SEPARATED
+
+
+def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
+    """March `steps` steps of `h` [s] and return everything; contact columns of shape (steps, contacts)."""
+    bodies = Bodies(system)
+    contacts = [Contact(one, bodies) for one in system.contacts]
+    a, b, load = recurrence = scheme(bodies.stiffness, bodies.damping, h)
+    drives = bodies.drives(h)
+    q_before, q = start(contacts, bodies, scheme, h)
+    ledger, kept, guess = Ledger(bodies, scheme, recurrence, h), [], None
+    for n in range(steps):
+        # 1. Trial.
+        force = drives(n * h)
+        trial = a @ q - b @ q_before + load @ force
+        # 2. Traces.
+        for one in contacts:
+            one.freeze(trial, (n + 1) * h)
+        # 3. Trial gap and slip. 4. Compliance.
+        rows = rows_of(contacts)
+        free = without_forces(contacts, trial, rows @ load @ rows.T, h)
+        # 5. State. All combinations of several contacts are tried at one step in ten, to count the consistent ones.
+        found = solve(free, guess if n % 10 and len(contacts) > 1 else None)
+        if not found:
+            raise RuntimeError(f"no consistent state of the contacts at step {n}")
+        guess, touches = found[0]
+        # 6. Correction.
+        push = rows.T @ forces_of(touches)
+        q_new = trial + load @ push
+
+        ledger.add(contacts, touches, (force, push), (q_before, q, q_new), n)
+        kept.append({"solutions": len(found), **books(contacts, touches, free, q_new), **vars(ledger.sums)})
+        q_before, q = q, q_new
+    trail = SimpleNamespace(**{name: np.array([one[name] for one in kept]) for name in kept[0]})
+    trail.last = q_before, q
+    return trail
+
+
+def rows_of(contacts):
+    return np.array([row for one in contacts for row in one.traces[:2]])
+
+
+def without_forces(contacts, trial, w, h):
+    """All contacts at the end of a step without their forces, with their compliance."""
+    own = [w[i : i + 2, i : i + 2] for i in range(0, len(w), 2)]
+    free = [one.free(trial, part) for one, part in zip(contacts, own, strict=True)]
+    return Contacts([one.before for one in contacts], free, w, h)
+
+
+def start(contacts, bodies, scheme, h):
+    """Return the positions a step before the start and at it, with the contacts at their start.
+
+    Forces of contacts that are closed act before the start as they do in the first step.
+    """
+    q, velocity = bodies.start()
+    a, b, load = scheme(bodies.stiffness, bodies.damping, h)
+    force, still = bodies.drives(h)(0.0), np.zeros(bodies.size)
+
+    def under(f, q=q, velocity=velocity):
+        return before_start(scheme, bodies.stiffness, bodies.damping, h, q, velocity, f)
+
+    def begin(q_before):
+        for one in contacts:
+            one.begin(q, q_before, velocity, h)
+        return [one for one in contacts if one.last_gap == 0.0]
+
+    q_before = under(force)
+    closed = begin(q_before)
+    if closed:
+        rows = rows_of(closed)
+        answers = np.array([load @ row - b @ under(row, still, still) for row in rows])
+        trial = a @ q - b @ q_before + load @ force
+        for one in closed:
+            one.freeze(trial, h)
+        _, touches = solve(without_forces(closed, trial, rows @ answers.T, h))[0]
+        q_before = under(force + rows.T @ forces_of(touches))
+        begin(q_before)
+        for one, touch in zip(closed, touches, strict=True):
+            one.press(touch)
+    for one in contacts:
+        one.before.given = None
+    return q_before, q
+
+
+def books(contacts, touches, free, q):
+    """Return what is kept of the contacts after a step, and carry them on."""
+    forces, was = forces_of(touches), [one.before.status for one in contacts]
+    shares = []
+    for i, (one, touch) in enumerate(zip(contacts, touches, strict=True)):
+        alone = free.alone(i, forces)
+        shares.append(one.shares(touch, alone))
+        one.keep(touch, alone, q)
+    return {
+        "normal": [touch.normal for touch in touches],
+        "tangential": [touch.tangential for touch in touches],
+        "status": [touch.status for touch in touches],
+        "landings": [int(old == SEPARATED != one.status) for old, one in zip(was, touches, strict=True)],
+        "share": shares,
+        "position": [one.place(q) for one in contacts],
+        "gap": [one.gap(q) for one in contacts],
+        "height": [one.height(q) for one in contacts],
+        "state": [one.before.state for one in contacts],
+    }
+
+
+class Ledger:
+    """Works since the start, losses, and the energy stored at the last step [J]."""
+
+    def __init__(self, bodies, scheme, recurrence, h):
+        self.bodies, self.central, self.b, self.h = bodies, scheme is central, recurrence.b, h
+        self.inverse = np.linalg.inv(recurrence.load)
+        self.sums = SimpleNamespace(stored=0.0, drive=0.0, contact=0.0, friction=0.0, convection=0.0, damping=0.0)
+
+    def add(self, contacts, touches, forces, positions, n):
+        """Add step `n`: forces of drives and contacts on the modes, the last three positions."""
+        (force, push), (q_before, q, q_new) = forces, positions
+        middle, sums = (q_new - q_before) / 2, self.sums
+        sums.drive += force @ middle
+        sums.contact += push @ middle
+        for one, touch in zip(contacts, touches, strict=True):
+            tip, track, lift = np.subtract(one.imposed, one.imposed_at((n - 1) * self.h)) / 2
+            frame = touch.tangential * (tip - track) - touch.normal * lift
+            sums.drive += frame
+            sums.contact -= frame
+            work = touch.tangential * one.slip(touch, q_new)
+            sums.friction += work if isinstance(one.before.law, (st.LuGre, st.RateAndState)) else abs(work)
+            slope = (touch.normal * one.traces.slopes[1] - touch.tangential * one.traces.slopes[0]) @ q_new
+            sums.convection += slope * (one.place(q_new) - one.place_before) / 2
+        d, d_before, stiffness = q_new - q, q - q_before, self.bodies.stiffness
+        if self.central:
+            sums.damping += middle @ self.bodies.damping @ middle / self.h
+            sums.stored = (d @ d / self.h**2 + q_new @ stiffness @ q) / 2
+        else:
+            sums.damping += middle @ self.inverse @ (d - self.b @ d_before) - self.kinetic(d) + self.kinetic(d_before)
+            sums.stored = self.kinetic(d) + q_new @ stiffness @ q / 2
+
+    def kinetic(self, d):
+        return d @ self.inverse @ (d + self.b @ d) / 4
