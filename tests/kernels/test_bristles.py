@@ -11,7 +11,7 @@ from physics.cases import SCHEME_NAMES
 
 import stridula as st
 from kernels.twin.modes import before_start, central, exact
-from kernels.twin.way import SLIDING
+from kernels.twin.way import SEPARATED, SLIDING, Before
 from kernels.twin.way_in_space import closing, on_bristles, sliding
 from stridula._kernels.layout import columns as at
 from stridula._kernels.layout.laws import LAW_COLUMNS
@@ -32,16 +32,17 @@ def test_one_step_has_the_forces_of_root_finding():
         earlier = last * (1.0 + 0.1 * random.standard_normal(2))
         slip = last + abs(gap) * random.standard_normal(2)
         z = 0.6 * LAW.kinetic / LAW.stiffness * random.standard_normal(2)
-        before = SimpleNamespace(
+        before = Before(
+            LAW,
             status=SLIDING,
-            last=last,
-            earlier=earlier,
+            slip=last,
+            earlier_slip=earlier,
             state=z,
             normal=abs(gap) / w[0, 0],
             tangential=0.3 * abs(gap) / w[0, 0] * random.standard_normal(2),
             past=0.15 * random.standard_normal(2),
         )
-        normal, (ratios, _, after) = closing(gap, w, partial(on_bristles, LAW, before, slip, w, step))
+        normal, (ratios, _, after) = closing(gap, w, partial(on_bristles, before, slip, w, step))
         carried = carried_of(before, z)
         compliance = np.zeros((4, 4))
         compliance[np.ix_([0, 1, 3], [0, 1, 3])] = w
@@ -65,9 +66,7 @@ def test_one_step_of_a_slip_that_turns_has_the_forces_of_root_finding(law):
         last = step * 10.0 ** random.uniform(-3.5, -1.5) * random.standard_normal(2)
         slip = last + 0.5 * abs(gap) * random.standard_normal(2)
         way = last / np.linalg.norm(last)
-        before = SimpleNamespace(
-            status=SLIDING, last=last, earlier=last, normal=0.0, tangential=np.zeros(2), past=0.15 * way
-        )
+        before = Before(law, SLIDING, slip=last, earlier_slip=last, tangential=np.zeros(2), past=0.15 * way)
         normal, found = closing(gap, w, partial(sliding, law, last, before.past, slip, w, step))
         if found is None:
             continue
@@ -92,7 +91,7 @@ def carried_of(before, state):
     """What a contact of that past carries, a row for each tangent."""
     carried = np.zeros((2, at.CARRIED))
     carried[:, at.STATUS], carried[:, at.LAST_NORMAL] = before.status, before.normal
-    carried[:, at.LAST_SLIP], carried[:, at.EARLIER_SLIP] = before.last, before.earlier
+    carried[:, at.LAST_SLIP], carried[:, at.EARLIER_SLIP] = before.slip, before.earlier_slip
     carried[:, at.LAST_TANGENTIAL], carried[:, at.PAST_RATIO] = before.tangential, before.past
     carried[:, at.FRICTION_STATE] = state
     return carried
@@ -132,8 +131,7 @@ def twin(scheme, law=LAW):
     belt = np.array([BELT, LATERAL])
     last = rows[1:] @ (q - q_before) - belt * STEP
     earlier = 3 * last + 2 * STEP * belt
-    past = SimpleNamespace(status=0, last=last, earlier=earlier, state=np.zeros(2), normal=0.0)
-    past.tangential, past.past = np.zeros(2), np.zeros(2)
+    past = Before(law, SEPARATED, last, earlier, state=np.zeros(2), tangential=np.zeros(2), past=np.zeros(2))
     out = SimpleNamespace(normal=[], tangential=[], state=[], slip=[])
     for n in range(STEPS):
         free = a @ q - b @ q_before + load @ force
@@ -142,13 +140,14 @@ def twin(scheme, law=LAW):
         gap, slip = GAP - rise + rows[0] @ free, rows[1:] @ (free - q) - belt * STEP
         pushes, ratios, rest, z = np.zeros(3), np.zeros(2), np.zeros(2), np.zeros(2)
         if gap < 0:
-            normal, (ratios, rest, z) = closing(gap, w, partial(on_bristles, law, past, slip, w, STEP))
+            normal, (ratios, rest, z) = closing(gap, w, partial(on_bristles, past, slip, w, STEP))
             pushes = np.array([normal, *(-normal * ratios)])
         q_before, q = q, free + load @ rows.T @ pushes
-        past = SimpleNamespace(
-            status=2 if gap < 0 else 0,
-            last=rows[1:] @ (q - q_before) - belt * STEP,
-            earlier=past.last,
+        past = Before(
+            law,
+            status=SLIDING if gap < 0 else SEPARATED,
+            slip=rows[1:] @ (q - q_before) - belt * STEP,
+            earlier_slip=past.slip,
             state=z,
             normal=pushes[0],
             tangential=-pushes[1:],
@@ -158,7 +157,7 @@ def twin(scheme, law=LAW):
             ("normal", pushes[0]),
             ("tangential", -pushes[1:]),
             ("state", z),
-            ("slip", past.last / STEP),
+            ("slip", past.slip / STEP),
         ):
             getattr(out, name).append(value)
     return SimpleNamespace(**{name: np.array(values) for name, values in vars(out).items()})

@@ -32,6 +32,11 @@ def curve(law, speed):
     return law.kinetic + (law.static - law.kinetic) * np.exp(-((speed / law.velocity) ** exponent)) + viscous * speed
 
 
+def size(v):
+    """Of a velocity along one tangent or two."""
+    return abs(v) if np.ndim(v) == 0 else np.linalg.norm(v)
+
+
 def limit(law, speed):
     """Ratio of forces in steady sliding under LuGre's law, without its viscous part."""
     return law.kinetic + (law.static - law.kinetic) * np.exp(-((speed / law.velocity) ** 2))
@@ -39,12 +44,13 @@ def limit(law, speed):
 
 def state_after(law, state, v, h):
     """Internal state after `h` at the constant slip velocity `v`."""
-    speed = abs(v)
+    speed = size(v)
     if isinstance(law, st.LuGre):
-        end = limit(law, v) / law.stiffness
-        if speed * h < 1e-9 * end:
-            return state + (v - speed * state / end) * h
-        return np.sign(v) * end + (state - np.sign(v) * end) * np.exp(-speed * h / end)
+        # A relaxation of the bristles, to the direction of the slip.
+        rate = law.stiffness * speed / limit(law, speed)
+        if rate * h < 1e-9:
+            return state + (v - rate * state) * h
+        return v / rate + (state - v / rate) * np.exp(-rate * h)
     distance = law.slip_distance
     if law.evolution == "aging":
         if speed * h < 1e-9 * distance:
@@ -58,7 +64,7 @@ def state_after(law, state, v, h):
 def ratio_with_state(law, state, v):
     """Ratio of forces at slip velocity `v`."""
     if isinstance(law, st.LuGre):
-        rate = v - abs(v) * state * law.stiffness / limit(law, v)
+        rate = v - law.stiffness * size(v) / limit(law, size(v)) * state
         return law.stiffness * state + law.damping * rate + law.viscous * v
     exponent = (law.reference + law.b * np.log(law.velocity * state / law.slip_distance)) / law.a
     return law.a * np.arcsinh(v / (2 * law.velocity) * np.exp(exponent))

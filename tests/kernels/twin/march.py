@@ -9,7 +9,7 @@ import numpy as np
 import stridula as st
 
 from .contact import Contact
-from .modes import Bodies, before_start, central
+from .modes import Bodies, before_start
 from .states import Contacts, forces_of, solve
 from .way import SEPARATED
 
@@ -21,7 +21,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
     a, b, load = recurrence = scheme(bodies.stiffness, bodies.damping, h)
     drives = bodies.drives(h)
     q_before, q = start(contacts, bodies, scheme, h)
-    ledger, kept, guess = Ledger(bodies, scheme, recurrence, h), [], None
+    ledger, kept, guess = Ledger(bodies.stiffness, recurrence, h), [], None
     for n in range(steps):
         # 1. Trial.
         force = drives(n * h)
@@ -119,9 +119,8 @@ def books(contacts, touches, free, q):
 class Ledger:
     """Works since the start, losses, and the energy stored at the last step [J]."""
 
-    def __init__(self, bodies, scheme, recurrence, h):
-        self.bodies, self.central, self.b, self.h = bodies, scheme is central, recurrence.b, h
-        self.inverse = np.linalg.inv(recurrence.load)
+    def __init__(self, stiffness, recurrence, h):
+        self.stiffness, self.b, self.h, self.inverse = stiffness, recurrence.b, h, np.linalg.inv(recurrence.load)
         self.sums = SimpleNamespace(stored=0.0, drive=0.0, contact=0.0, friction=0.0, convection=0.0, damping=0.0)
 
     def add(self, contacts, touches, forces, positions, n):
@@ -139,13 +138,9 @@ class Ledger:
             sums.friction += work if isinstance(one.before.law, (st.LuGre, st.RateAndState)) else abs(work)
             slope = (touch.normal * one.traces.slopes[1] - touch.tangential * one.traces.slopes[0]) @ q_new
             sums.convection += slope * (one.place(q_new) - one.place_before) / 2
-        d, d_before, stiffness = q_new - q, q - q_before, self.bodies.stiffness
-        if self.central:
-            sums.damping += middle @ self.bodies.damping @ middle / self.h
-            sums.stored = (d @ d / self.h**2 + q_new @ stiffness @ q) / 2
-        else:
-            sums.damping += middle @ self.inverse @ (d - self.b @ d_before) - self.kinetic(d) + self.kinetic(d_before)
-            sums.stored = self.kinetic(d) + q_new @ stiffness @ q / 2
+        d, d_before = q_new - q, q - q_before
+        sums.damping += middle @ self.inverse @ (d - self.b @ d_before) - self.kinetic(d) + self.kinetic(d_before)
+        sums.stored = self.kinetic(d) + q_new @ self.stiffness @ q / 2
 
     def kinetic(self, d):
         return d @ self.inverse @ (d + self.b @ d) / 4

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -76,9 +77,12 @@ class Sliding:
 
 def on_its_way(before, free, normal, h):
     """Return the way of a contact under a normal force."""
-    if laws.has_state(before.law):
-        return _with_state(before, free, normal, h)
-    law, last, pull, moved = before.law, before.slip, free.w[1, 1] * normal, free.slip + free.w[1, 0] * normal
+    law, last, give, moved = before.law, before.slip, free.w[1, 1], free.slip + free.w[1, 0] * normal
+    pull = give * normal
+    if laws.has_state(law):
+        ratio, past, state = with_state(before, moved, give, normal, h, partial(_root, law.velocity * 1e-12))
+        slow = abs(moved - pull * ratio) < h * law.velocity
+        return Way(ratio, past, state, STICKING if slow else SLIDING, 0.0)
     begun, drive = 0.5 * (last + moved), moved - last
     held = laws.held_up_to(law, before.status == STICKING and not free.let_go)
     driven = (moved + free.strayed) / pull
@@ -201,11 +205,6 @@ def _slide(way, u, begin, drive, sense):
     return later, past, 0.0
 
 
-def changed(normal, last):
-    """The normal force to which the friction of the last step has changed: an impulse would not go on."""
-    return last + np.clip(normal - last, -min(normal, last), min(normal, last))
-
-
 def weighted(size, begin, ratios):
     """The ratios of both stages of a part, weighted for this step and for the next."""
     velocities = INNER[1]
@@ -213,53 +212,61 @@ def weighted(size, begin, ratios):
     return weights @ ratios, (size * velocities - weights) @ ratios
 
 
-def _with_state(before, free, normal, h):
-    """The way under a law with internal state, in parts of a rule of two stages, each with its ratio at its end."""
-    law, state, past, grows = before.law, before.state, before.past, 0.0
-    pull, moved = free.w[1, 1] * normal, free.slip + free.w[1, 0] * normal
-    begun, drive = 0.5 * (before.slip + moved), moved - before.slip
+def with_state(before, moved, give, normal, h, root):
+    """Ratio, past part and state under a law with internal state, in parts of the rule of two stages.
+
+    All are numbers along one tangent, and vectors along two, where `give`, the compliance, is a matrix. `moved` is the
+    slip without friction, under the normal force; `root` finds a velocity.
+    """
+    law, state, past = before.law, before.state, before.past
+    pull, begun, drive = give * normal, 0.5 * (before.slip + moved), moved - before.slip
+    grows = later = rest = 0 * drive
     if before.status == SEPARATED:
         past = 0.5 * laws.ratio_with_state(law, state, begun / h)
     elif before.normal > 0:
-        now = free.w[1, 1] * changed(normal, before.normal)
-        grows = drive - (before.slip - before.earlier_slip) - now * before.tangential / before.normal
-    u = begun - pull * past - grows / 6
-    if isinstance(law, st.LuGre):
-        change = (abs(drive) + pull * law.static) / (4 * law.velocity * h)
-        count = 1 + max(np.sqrt(pull * law.stiffness) / 0.25, change)
-    else:
-        count = 2 + (abs(u) + abs(drive)) / law.slip_distance
-    count = int(min(count, 64))
-    size, later, rest = 1 / count, 0.0, 0.0
+        # The normal force to which the friction of the last step has changed: an impulse would not go on.
+        least = min(normal, before.normal)
+        now = give * (before.normal + np.clip(normal - before.normal, -least, least))
+        grows = drive - (before.slip - before.earlier_slip) - np.dot(now, before.tangential) / before.normal
+    u = begun - np.dot(pull, past) - grows / 6
+    count = _parts(law, u, drive, pull, h)
+    part = 1 / count
     for k in range(count):
-        begin, ratios = drive + grows * k * size, np.zeros(2)
+        begin, ratios = drive + grows * k * part, np.zeros((2, *np.shape(u)))
         for stage in range(2):
-            alone = u + size * (
-                INNER[stage].sum() * begin + GROWTH[stage] * size * grows - pull * INNER[stage] @ ratios
-            )
+            driven = INNER[stage].sum() * begin + GROWTH[stage] * part * grows
+            free = u + part * (driven - np.dot(pull, INNER[stage] @ ratios))
 
             def ratio(v, state=state):
-                return laws.ratio_with_state(law, laws.state_after(law, state, v, SHARE * size * h), v)
+                return laws.ratio_with_state(law, laws.state_after(law, state, v, SHARE * part * h), v)
 
-            def error(v, alone=alone, ratio=ratio):
-                return v * h - alone + SHARE * size * pull * ratio(v)
+            def error(v, free=free, ratio=ratio):
+                return v - (free - SHARE * part * np.dot(pull, ratio(v))) / h
 
-            v = _root(error, law, abs(u) / h + abs(alone) / h)
+            v = root(error, u / h, free / h)
             ratios[stage] = ratio(v)
-            state = laws.state_after(law, state, v, (1 - SHARE, SHARE)[stage] * size * h)
-        more, less = weighted(size, k * size, ratios)
+            state = laws.state_after(law, state, v, (1 - SHARE, SHARE)[stage] * part * h)
+        more, less = weighted(part, k * part, ratios)
         later, rest, u = later + more, rest + less, v * h
-    slow = abs(moved - pull * (past + later)) < h * law.velocity
-    return Way(past + later, rest, state, STICKING if slow else SLIDING, 0.0)
+    return past + later, rest, state
 
 
-def _root(error, law, reach):
+def _parts(law, u, drive, pull, h):
+    if not isinstance(law, st.LuGre):
+        return int(min(2 + (abs(u) + abs(drive)) / law.slip_distance, 64))
+    if np.ndim(pull):
+        squares = u @ u + drive @ drive
+        pull = (u @ pull @ u + drive @ pull @ drive) / squares if squares else np.trace(pull) / 2
+    change = (laws.size(drive) + pull * law.static) / (4 * law.velocity * h)
+    return int(min(1 + max(np.sqrt(pull * law.stiffness) / 0.25, change), 64))
+
+
+def _root(scale, error, last, free):
     """The velocity at which an increasing function is zero, searched on the scale of creep."""
-    scale = law.velocity * 1e-12
     at_rest = error(0.0)
     if at_rest == 0.0:
         return 0.0
-    sense, high = -np.sign(at_rest), max(reach, scale)
+    sense, high = -np.sign(at_rest), max(abs(last) + abs(free), scale)
     while sense * error(sense * high) < 0:
         high *= 2
     y = brentq(

@@ -7,27 +7,13 @@ from scipy.optimize import root
 
 import stridula as st
 
-from .laws import curve, limit
-from .way import GROWTH, INNER, SEPARATED, SHARE, changed, weighted
+from .laws import curve
+from .way import INNER, SHARE, weighted, with_state
 
 
-def bristles_after(law, z, v, h):
-    """Deflections after `h` at the constant slip velocity `v`, both vectors: a relaxation to the slip's direction."""
-    speed = np.linalg.norm(v)
-    rate = law.stiffness * speed / limit(law, speed)
-    if rate * h < 1e-9:
-        return z + (v - rate * z) * h
-    return v / rate + (z - v / rate) * np.exp(-rate * h)
-
-
-def bristles_ratio(law, z, v):
-    """Ratios of forces along both tangents."""
-    rate = v - law.stiffness * np.linalg.norm(v) / limit(law, np.linalg.norm(v)) * z
-    return law.stiffness * z + law.damping * rate + law.viscous * v
-
-
-def solved(error, start):
-    """The vector at which an error vanishes, to round-off."""
+def solved(error, start, otherwise=None):
+    """The vector at which an error vanishes, to round-off, sought from `start`, or `otherwise` where that is zero."""
+    start = start if start.any() or otherwise is None else otherwise
     size = max(np.abs(start).max(), 1e-300)
     for begin in (start / size, 0.5 * start / size, 1e-3 * start / size, np.zeros(2)):
         found = root(lambda x: error(size * x) / size, begin, tol=1e-15)
@@ -37,44 +23,12 @@ def solved(error, start):
     raise AssertionError("no velocity found")
 
 
-def on_bristles(law, before, slip, w, h, normal):
-    """Return ratios, past parts and bristles of LuGre's law; `before` has status, slips, bristles, forces and past.
+def on_bristles(before, slip, w, h, normal):
+    """Return ratios, past parts and bristles of LuGre's law.
 
     `slip` are those without forces of this contact, `w` the compliance for ``(N, -T1, -T2)``.
     """
-    pull, moved = w[1:, 1:] * normal, slip + w[1:, 0] * normal
-    begun, drive = 0.5 * (before.last + moved), moved - before.last
-    past, grows, z = before.past, np.zeros(2), before.state
-    if before.status == SEPARATED:
-        past = 0.5 * bristles_ratio(law, z, begun / h)
-    elif before.normal > 0:
-        now = w[1:, 1:] * changed(normal, before.normal)
-        grows = drive - (before.last - before.earlier) - now @ before.tangential / before.normal
-    u = begun - pull @ past - grows / 6
-    squares = u @ u + drive @ drive
-    pulled = (u @ pull @ u + drive @ pull @ drive) / squares if squares else np.trace(pull) / 2
-    change = (np.linalg.norm(drive) + pulled * law.static) / (4 * law.velocity * h)
-    count = int(min(1 + max(np.sqrt(pulled * law.stiffness) / 0.25, change), 64))
-    size, later, rest = 1 / count, np.zeros(2), np.zeros(2)
-    for k in range(count):
-        driven, ratios = drive + grows * k * size, np.zeros((2, 2))
-        for stage in range(2):
-            free = u + size * (
-                INNER[stage].sum() * driven + GROWTH[stage] * size * grows - pull @ (INNER[stage] @ ratios)
-            )
-
-            def ratio(v, z=z):
-                return bristles_ratio(law, bristles_after(law, z, v, SHARE * size * h), v)
-
-            def error(v, free=free, ratio=ratio):
-                return v - (free - SHARE * size * pull @ ratio(v)) / h
-
-            v = solved(error, u / h if u.any() else free / h)
-            ratios[stage] = ratio(v)
-            z = bristles_after(law, z, v, (1 - SHARE, SHARE)[stage] * size * h)
-        more, less = weighted(size, k * size, ratios)
-        later, rest, u = later + more, rest + less, v * h
-    return past + later, rest, z
+    return with_state(before, slip + w[1:, 0] * normal, w[1:, 1:], normal, h, solved)
 
 
 def sliding(law, last, past, slip, w, h, normal):
