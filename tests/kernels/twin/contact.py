@@ -9,7 +9,6 @@ import numpy as np
 import stridula as st
 
 from .laws import curve, has_state, ratio_with_state, state_after, state_of_new
-from .states import Touch
 from .way import SEPARATED, SLIDING, STICKING, Before, Free
 
 
@@ -145,7 +144,7 @@ class Contact:
         last, now = mu * self.before.normal - sense * self.before.tangential, mu * pressed - sense * needed
         return last / (last - now) if now < 0 else 1.0
 
-    def keep(self, touch: Touch, alone, q):
+    def keep(self, touch, alone, q):
         """Carry a step on to the next."""
         last, way, slip = self.before, touch.way, self.slip(touch, q)
         was_open = last.status == SEPARATED

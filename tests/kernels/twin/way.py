@@ -57,22 +57,13 @@ class Free(NamedTuple):
 
 
 class Way(NamedTuple):
-    """Ratio of the forces of a step, its past part in the next one, state and status, share of the step in stick."""
+    """Ratio of the forces of a step, its past part in the next one, status, share of the step in stick, and state."""
 
     ratio: float
     past: float
-    state: float
     status: int
     stuck: float
-
-
-@dataclass
-class Sliding:
-    """Sliding under a set-valued law: the slip that a ratio of one undoes in a step, and the step [s]."""
-
-    law: st.FrictionLaw
-    pull: float
-    h: float
+    state: float = 0.0
 
 
 def on_its_way(before, free, normal, h):
@@ -82,127 +73,132 @@ def on_its_way(before, free, normal, h):
     if laws.has_state(law):
         ratio, past, state = with_state(before, moved, give, normal, h, partial(_root, law.velocity * 1e-12))
         slow = abs(moved - pull * ratio) < h * law.velocity
-        return Way(ratio, past, state, STICKING if slow else SLIDING, 0.0)
-    begun, drive = 0.5 * (last + moved), moved - last
-    held = laws.held_up_to(law, before.status == STICKING and not free.let_go)
+        return Way(ratio, past, STICKING if slow else SLIDING, 0.0, state)
+    begun, past = 0.5 * (last + moved), before.past
+    # Let go, it never sticks.
+    held = -1.0 if free.let_go else laws.held_up_to(law, before.status == STICKING)
     driven = (moved + free.strayed) / pull
     # Whether it sticks, and when it breaks, follows from the forces with which it would stick.
     pressed, pushed = np.linalg.solve(free.w, [-free.gap, -free.slip - free.strayed])
     needed = driven if before.status == SLIDING or pressed <= 0 else -pushed / pressed
-    way = Sliding(law, pull, h)
     if before.status == STICKING and last == 0.0:
-        return _from_stick(way, before, needed, driven, held, free.let_go)
+        grows = needed - (before.tangential / before.normal if before.normal else needed)
+        way = Sliding(law, h, pull, pull * driven, pull * grows)
+        return _from_stick(way, needed, grows, driven, free.let_go)
     if before.status == STICKING:
-        short = 2 * (needed - before.past)
-        if abs(short) <= held and not free.let_go:
-            return Way(needed, needed / 2, before.state, STICKING, 1.0)
-        more, rest, sticks = _slide(way, 0.0, 0.0, (2 * pull * (driven - before.past), 0.0), np.sign(short))
-        return _slid(before, before.past + more, rest, sticks)
-    past = before.past
+        short = 2 * (needed - past)
+        if abs(short) <= held:
+            return Way(needed, needed / 2, STICKING, 1.0)
+        return Sliding(law, h, pull, 2 * pull * (driven - past)).follow(0.0, 0.0, np.sign(short), past)
     if before.status == SEPARATED:
-        if abs(needed) <= held and not free.let_go:
-            return Way(needed, needed / 2, before.state, STICKING, 1.0)
-        sense = 1.0 if begun > 0 else -1.0
-        past = 0.5 * sense * laws.curve(law, abs(begun) / h)
-    u = begun - pull * past
+        if abs(needed) <= held:
+            return Way(needed, needed / 2, STICKING, 1.0)
+        past = 0.5 * (1.0 if begun > 0 else -1.0) * laws.curve(law, abs(begun) / h)
+    u, drive = begun - pull * past, moved - last
     sense = 1.0 if u > 0 or (u == 0 and drive > 0) else -1.0
-    more, rest, sticks = _slide(way, u, 0.0, (drive, 0.0), sense)
-    return _slid(before, past + more, rest, sticks)
+    return Sliding(law, h, pull, drive).follow(u, 0.0, sense, past)
 
 
-def _from_stick(way, before, needed, driven, held, let_go):
+def _from_stick(way, needed, grows, driven, let_go):
     """The way of a contact that stuck to the end of the last step: it sticks, breaks, or broke in the last step."""
-    pull = way.pull
-    grows = needed - (before.tangential / before.normal if before.normal else needed)
+    held = laws.held_up_to(way.law, not let_go)
     if max(abs(needed), abs(needed + grows)) <= held and not let_go:
-        return Way(needed, needed / 2 + grows / 3, before.state, STICKING, 1.0)
+        return Way(needed, needed / 2 + grows / 3, STICKING, 1.0)
+    mean = needed / 2 - grows / 6
     if abs(needed) > held:
         # It broke before this step: from the last one on it slides with the ratio of incipient sliding.
         sense, earlier = np.sign(needed), needed - grows
         breaks = np.clip((sense * held - earlier) / grows, 0.0, 1.0) if grows else 0.0
         slides = sense * laws.curve(way.law, 0.0)
-        before_now = _moments(0.0, breaks, *(earlier + grows * breaks * np.array([0.0, 0.5, 1.0])))[1]
-        before_now += _moments(breaks, 1.0, slides, slides, slides)[1]
-        u = pull * ((needed / 2 - grows / 6) - before_now + (1 - breaks**2) / 2 * (driven - needed))
-        more, rest, sticks = _slide(way, u, 0.0, (pull * driven, pull * grows), sense)
-        return _slid(before, before_now + more, rest, sticks)
-    sense = np.sign(needed + grows) or -1.0
-    breaks = 0.0 if abs(needed) >= held else np.clip((sense * held - needed) / grows, 0.0, 1.0)
-    later, past = _moments(0.0, breaks, *(needed + grows * breaks * np.array([0.0, 0.5, 1.0])))
-    more, rest, sticks = _slide(way, 0.0, breaks, (pull * driven, pull * grows), sense)
-    return _slid(before, needed / 2 - grows / 6 + later + more, past + rest, sticks, breaks)
+        broken = _straight(0.0, breaks, earlier, earlier + grows * breaks) + _straight(breaks, 1.0, slides, slides)
+        u = way.pull * (mean - broken[1] + (1 - breaks**2) / 2 * (driven - needed))
+        return way.follow(u, 0.0, sense, broken[1])
+    breaks = 0.0 if abs(needed) >= held else np.clip((np.sign(needed + grows) * held - needed) / grows, 0.0, 1.0)
+    later, past = _straight(0.0, breaks, needed, needed + grows * breaks)
+    return way.follow(0.0, breaks, np.sign(needed + grows) or -1.0, mean + later, past)
 
 
-def _slid(before, ratio, past, sticks, stuck=0.0):
-    """A way that ends in a stick for a share of the step, after another stick, or in sliding."""
-    return Way(ratio, past, before.state, STICKING if sticks else SLIDING, stuck + sticks)
+@dataclass
+class Sliding:
+    """Sliding on its way under a set-valued law, in a step of `h` [s]: ``u' = drive + growth s - pull r``."""
 
+    law: st.FrictionLaw
+    h: float
+    pull: float
+    drive: float
+    growth: float = 0.0
 
-def _moments(a, b, first, middle, last):
-    """Return the integrals of a ratio from a to b with the weights ``1 - s`` and ``s``, by Simpson's rule."""
-    s, values = np.array([a, 0.5 * (a + b), b]), np.array([first, 4 * middle, last])
-    return (b - a) / 6 * np.sum((1 - s) * values), (b - a) / 6 * np.sum(s * values)
+    def follow(self, u, begin, sense, ratio, past=0.0):
+        """Slide to the end of the step from `begin` on, where it stuck until then, with both parts of the ratio."""
+        held, stuck, parts = laws.held_up_to(self.law, True) * self.pull, begin, np.array([ratio, past])
+        for _ in range(3):
+            more, stop = self.until_stop(u, begin, sense)
+            parts += more
+            if stop is None:
+                break
+            first, last = self.drive + self.growth * stop, self.drive + self.growth
+            if max(abs(first), abs(last)) <= held:
+                parts += _straight(stop, 1.0, first, last) / self.pull
+                return Way(*parts, STICKING if stop < 1 else SLIDING, stuck + 1.0 - stop)
+            begin = stop
+            if abs(first) <= held:
+                broken = np.sign(last) * held
+                begin = stop + (1 - stop) * (broken - first) / (last - first)
+                parts += _straight(stop, begin, first, broken) / self.pull
+                first = last
+            u, sense = 0.0, 1.0 if first > 0 else -1.0
+        return Way(*parts, SLIDING, stuck)
 
+    def until_stop(self, u, a, sense):
+        """Slide by the method of Runge and Kutta; return both parts of the ratio, and the share at a stop or None."""
+        parts = np.zeros(2)
 
-def _part(way, u, rate, ratio):
-    law = way.law
-    if isinstance(law, st.StaticKinetic):
-        return 1.0
-    if isinstance(law, st.LinearWeakening):
-        scale, steep = law.static / law.slope * way.h, law.slope / way.h * (ratio > law.kinetic)
-    else:
-        scale, viscous = law.velocity * way.h, law.viscous / way.h if isinstance(law, st.Stribeck) else 0.0
-        steep = (ratio - law.kinetic - viscous * abs(u)) / scale + viscous
-    return max(0.5 / (abs(rate) / (scale + abs(u)) + way.pull * steep + 0.5), 1 / 64)
+        def ratio(u):
+            return sense * laws.curve(self.law, max(sense * u, 0.0) / self.h)
 
-
-def _slide(way, u, begin, drive, sense):
-    """Slide from `begin` on by the method of Runge and Kutta; return both parts of the ratio and the share of stick."""
-    later, past, pull = 0.0, 0.0, way.pull
-    held = laws.held_up_to(way.law, True)
-    for _ in range(3):
-
-        def ratio(u, sense=sense):
-            return sense * laws.curve(way.law, max(sense * u, 0.0) / way.h)
-
-        stops, a = False, begin
         while a < 1:
             k1 = ratio(u)
-            rate = drive[0] + drive[1] * a - pull * k1
-            size = _part(way, u, rate, abs(k1))
-            b = 1.0 if a + size >= 1 else a + size
-            size = b - a
-            middle = drive[0] + drive[1] * 0.5 * (a + b)
+            rate = self.drive + self.growth * a - self.pull * k1
+            size = min(self.part(u, rate, abs(k1)), 1 - a)
+            middle = self.drive + self.growth * (a + 0.5 * size)
             k2 = ratio(u + size / 2 * rate)
-            k3 = ratio(u + size / 2 * (middle - pull * k2))
-            k4 = ratio(u + size * (middle - pull * k3))
-            new = u + size * (middle - pull * (k1 + 2 * k2 + 2 * k3 + k4) / 6)
+            k3 = ratio(u + size / 2 * (middle - self.pull * k2))
+            k4 = ratio(u + size * (middle - self.pull * k3))
+            new = u + size * (middle - self.pull * (k1 + 2 * k2 + 2 * k3 + k4) / 6)
             if sense * new < 0:
-                bent = (new - u - rate * size) / size**2
-                after = 0.0
+                # On the parabola with the slope at the beginning.
+                bent, after = (new - u - rate * size) / size**2, 0.0
                 if u:
                     roots = np.roots([bent, rate, u])
                     inside = [one.real for one in roots if abs(one.imag) < 1e-9 * size and one.real / size > -1e-9]
                     after = float(np.clip(min(inside), 0.0, size))
                 half = u + rate * after / 2 + bent * (after / 2) ** 2
-                more, less = _moments(a, a + after, k1, ratio(half), ratio(0.0))
-                later, past, begin, stops = later + more, past + less, a + after, True
-                break
-            more, less = _moments(a, b, k1, 0.5 * (k2 + k3), k4)
-            later, past, u, a = later + more, past + less, new, b
-        if not stops:
-            return later, past, 0.0
-        ends = drive[0] + drive[1] * np.array([begin, 0.5 * (begin + 1), 1.0])
-        if max(abs(ends[0]), abs(ends[2])) <= held * pull:
-            more, less = _moments(begin, 1.0, *ends / pull)
-            return later + more, past + less, 1.0 - begin
-        if abs(ends[0]) <= held * pull:
-            breaks = begin + (1 - begin) * (np.sign(ends[2]) * held * pull - ends[0]) / (ends[2] - ends[0])
-            at_break = np.sign(ends[2]) * held
-            more, less = _moments(begin, breaks, ends[0] / pull, 0.5 * (ends[0] / pull + at_break), at_break)
-            later, past, begin, ends = later + more, past + less, breaks, ends[[2, 1, 2]]
-        u, sense = 0.0, 1.0 if ends[0] > 0 else -1.0
-    return later, past, 0.0
+                return parts + _moments(a, a + after, k1, ratio(half), ratio(0.0)), a + after
+            parts += _moments(a, a + size, k1, 0.5 * (k2 + k3), k4)
+            u, a = new, 1.0 if a + size >= 1 else a + size
+        return parts, None
+
+    def part(self, u, rate, ratio):
+        """Size of a part of the way."""
+        law, h = self.law, self.h
+        if isinstance(law, st.StaticKinetic):
+            return 1.0
+        if isinstance(law, st.LinearWeakening):
+            scale, steep = law.static / law.slope * h, law.slope / h * (ratio > law.kinetic)
+        else:
+            scale, viscous = law.velocity * h, law.viscous / h if isinstance(law, st.Stribeck) else 0.0
+            steep = (ratio - law.kinetic - viscous * abs(u)) / scale + viscous
+        return max(0.5 / (abs(rate) / (scale + abs(u)) + self.pull * steep + 0.5), 1 / 64)
+
+
+def _moments(a, b, first, middle, last):
+    """Return the integrals of a ratio from a to b with the weights ``1 - s`` and ``s``, by Simpson's rule."""
+    s, values = np.array([a, 0.5 * (a + b), b]), np.array([first, 4 * middle, last])
+    return (b - a) / 6 * np.array([np.sum((1 - s) * values), np.sum(s * values)])
+
+
+def _straight(a, b, first, last):
+    return _moments(a, b, first, 0.5 * (first + last), last)
 
 
 def weighted(size, begin, ratios):
