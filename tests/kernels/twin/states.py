@@ -74,9 +74,8 @@ def consistent(contacts, guess=None):
             continue
         touches = []
         for i, kind in enumerate(kinds):
-            touch = touch_of(
-                kind, contacts.before[i], contacts.alone(i, forces), *forces[2 * i : 2 * i + 2], contacts.h
-            )
+            own = forces[2 * i : 2 * i + 2]
+            touch = touch_of(kind, contacts.before[i], contacts.alone(i, forces), own, contacts.h)
             if touch is None:
                 break
             touches.append(touch)
@@ -93,31 +92,29 @@ def kinds_of(before):
     return (OPEN, STICK, 1, -1, BACK) if isinstance(before.law, st.Coulomb) else (OPEN, ON_ITS_WAY)
 
 
-def touch_of(kind, before, alone, normal, minus_tangential, h):
-    """The touch of a kind under its forces, None if these contradict it."""
+def touch_of(kind, before, alone, own, h):
+    """The touch of a kind under its own forces (N, -T), None if these contradict it."""
     if (kind == OPEN) != (alone.gap >= 0):
         return None
     if kind == OPEN:
         return Touch(SEPARATED)
-    if kind == GIVEN:
-        return Touch(SLIDING, normal, -minus_tangential)
+    normal, tangential = own[0], -own[1]
     if kind == ON_ITS_WAY:
-        if normal <= 0:
-            return None
-        way = on_its_way(before, alone, normal, h)
-        return Touch(way.status, normal, -minus_tangential, way)
+        way = on_its_way(before, alone, normal, h) if normal > 0 else None
+        return way and Touch(way.status, normal, tangential, way)
     turn = turned(before, alone)
-    if turn or kind == BACK:
-        fits = turn and kind == (STICK if turn.status == STICKING else BACK)
-        return Touch(turn.status, normal, -minus_tangential) if fits else None
-    if kind == STICK:
-        return Touch(STICKING, normal, -minus_tangential) if holds(before, normal, minus_tangential) else None
-    slip = alone.slip + alone.strayed + alone.w[1] @ [normal, minus_tangential]
-    return Touch(SLIDING, normal, -minus_tangential) if normal > 0 and kind * slip > 0 else None
+    if turn:
+        fits = kind == (STICK if turn.status == STICKING else BACK)
+    elif kind == STICK:
+        fits = holds(before, own)
+    else:
+        slip = alone.slip + alone.w[1] @ own
+        fits = kind == GIVEN or (kind != BACK and normal > 0 and kind * slip > 0)
+    return Touch(STICKING if kind == STICK else SLIDING, normal, tangential) if fits else None
 
 
-def holds(before, normal, minus_tangential):
-    return abs(minus_tangential) <= before.law.coefficient * normal
+def holds(before, own):
+    return abs(own[1]) <= before.law.coefficient * own[0]
 
 
 def turned(before, alone):
@@ -137,7 +134,7 @@ def turned(before, alone):
         return None
     share = before.slip / (before.slip - farther)
     rest = solved(alone.w, [-alone.gap, before.slip - alone.slip])
-    held = holds(before, *rest)
+    held = holds(before, rest)
     return Touch(STICKING if held else SLIDING, *(share * on + (1 - share) * (rest * [1, -1] if held else back)))
 
 
