@@ -9,6 +9,7 @@ import numpy as np
 import stridula as st
 
 from .contact import Contact
+from .laws import has_state
 from .modes import Bodies, before_start
 from .states import Contacts, forces_of, solve
 from .way import SEPARATED
@@ -135,7 +136,7 @@ class Ledger:
             sums.drive += frame
             sums.contact -= frame
             work = touch.tangential * one.slip(touch, q_new)
-            sums.friction += work if isinstance(one.before.law, (st.LuGre, st.RateAndState)) else abs(work)
+            sums.friction += work if has_state(one.before.law) else abs(work)
             slope = (touch.normal * one.traces.slopes[1] - touch.tangential * one.traces.slopes[0]) @ q_new
             sums.convection += slope * (one.place(q_new) - one.place_before) / 2
         d, d_before = q_new - q, q - q_before
