@@ -20,13 +20,13 @@ from .contact.in_space import (
     free_along,
     free_in_space,
     is_second,
-    on,
     pair_of,
     past_along,
     whole_compliance,
 )
 from .contact.law_in_space import next_in_space
 from .contact.solves import law_of, resting, strayed
+from .contact.tangents import along
 from .contact.yielding import about_indentation, comes_close
 from .contacts.circles import convected
 from .contacts.displacements import own_compliance
@@ -34,7 +34,7 @@ from .contacts.sweeps import solve_closed
 from .lanes.compiled import inlined, pasted
 from .lanes.operations import Number, Pair, Runs, add, anywhere, choose, component, held, hold
 from .layout import columns as at
-from .layout.contact_values import Free, FreeInSpace, Moved, Touch
+from .layout.contact_values import Free, FreeInSpace, Moved, Tangents, Touch
 from .layout.parts import Carried, Contacts, Parts, Sizes
 from .layout.rows import DISPLACEMENT
 from .trying import complete_many, place_after, soften, try_many
@@ -111,7 +111,7 @@ def keep_books_in_space(i: int, parts: Parts, n: int, runs: Runs) -> None:
             FreeInSpace(
                 held(now, here + at.FREE_GAP, runs),
                 pair_of(now, here + at.FREE_SLIP, at.IN_STEP, runs),
-                (strayed(carried, i, runs), strayed(carried, i + 1, runs)),
+                Tangents(strayed(carried, i, runs), strayed(carried, i + 1, runs)),
                 whole_compliance(contacts.faces, i, runs),
                 held(now, here + at.LET_GO, runs),
                 forces,
@@ -119,29 +119,30 @@ def keep_books_in_space(i: int, parts: Parts, n: int, runs: Runs) -> None:
             held(now, here + at.GIVE, runs),
             held(now, here + at.BEYOND, runs),
         )
-        touch = Touch(normal, on(forces, way), status, held(now, here + at.JAMMED_NOW, runs))
+        touch = Touch(normal, along(forces, way), status, held(now, here + at.JAMMED_NOW, runs))
         closed = share_states(i, touch, free_along(free, way), gap, before, parts, runs)
-        for k in range(2):
-            keep_anchor(i + k, slips[k], law, status, before.status, carried, runs)
+        keep_anchor(i, slips.a, law, status, before.status, carried, runs)
+        keep_anchor(i + 1, slips.b, law, status, before.status, carried, runs)
         if motion.shape[0] > 1:
-            driven = driven_work(i, normal, forces[0], motion, n, runs)
-            driven += driven_work(i + 1, runs.zero, forces[1], motion, n, runs)
+            driven = driven_work(i, normal, forces.a, motion, n, runs)
+            driven += driven_work(i + 1, runs.zero, forces.b, motion, n, runs)
             add(state.energies, at.CONTACT_WORK, runs, -driven)
             add(state.energies, at.DRIVE_WORK, runs, driven)
         of_law = law_of(i, contacts, runs)
         past, states, stuck = next_in_space((normal, status), free, of_law, carried_on, parts.timing.step)
         hold(carried, base + at.STUCK_SHARE, runs, stuck)
-        for k in range(2):
-            hold(carried, base + k * at.CARRIED + at.PAST_RATIO, runs, past[k])
-            hold(carried, base + k * at.CARRIED + at.FRICTION_STATE, runs, states[k])
-        lost = keep_forces(i, touch, Moved(gap, on(slips, way)), carried, contacts, closed, runs)
+        hold(carried, base + at.PAST_RATIO, runs, past.a)
+        hold(carried, base + at.CARRIED + at.PAST_RATIO, runs, past.b)
+        hold(carried, base + at.FRICTION_STATE, runs, states.a)
+        hold(carried, base + at.CARRIED + at.FRICTION_STATE, runs, states.b)
+        lost = keep_forces(i, touch, Moved(gap, along(slips, way)), carried, contacts, closed, runs)
         add(state.energies, at.FRICTION_LOSS, runs, lost)
-        for k in range(2):
-            keep_tangential(i + k, forces[k], carried, contacts.sums, runs)
+        keep_tangential(i, forces.a, carried, contacts.sums, runs)
+        keep_tangential(i + 1, forces.b, carried, contacts.sums, runs)
         hold(carried, base + at.CARRIED + at.STATUS, runs, resting(status))
         hold(carried, base + at.CARRIED + at.LAST_NORMAL, runs, normal)
-    for k in range(2):
-        keep_motion(i + k, Moved(gap, slips[k]), stuck, carried_on.slip[k], carried, runs)
+    keep_motion(i, Moved(gap, slips.a), stuck, carried_on.slip.a, carried, runs)
+    keep_motion(i + 1, Moved(gap, slips.b), stuck, carried_on.slip.b, carried, runs)
 
 
 @pasted

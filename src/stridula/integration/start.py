@@ -11,7 +11,7 @@ from .._kernels.contact.friction import next_state, set_valued, sliding_ratio, s
 from .._kernels.contact.pressing import stored_in
 from .._kernels.contact.slipping_in_space import ratio_of_state, state_after
 from .._kernels.layout import columns as at
-from .._kernels.layout.contact_values import Law, Yielding
+from .._kernels.layout.contact_values import Law, Tangents, Yielding
 from .._kernels.layout.laws import STATIC
 from ..arrays import Array
 from ..checks import ArgumentError
@@ -146,9 +146,9 @@ class _Start:
             share = speed / whole if whole else 0.0
             if self.arrays.contacts[number].contact.has_state_vector:
                 pair = slice(number, number + 2)
-                states, velocity = tuple(carried[pair, at.FRICTION_STATE]), tuple(self.speeds[pair])
+                states, velocity = Tangents(*carried[pair, at.FRICTION_STATE]), Tangents(*self.speeds[pair])
                 after = state_after(law, states, velocity, self.step)
-                middle = tuple(0.5 * (np.array(states) + np.array(after)))
+                middle = Tangents(*0.5 * (np.array(states) + np.array(after)))
                 ratios[i] = ratio_of_state(law, middle, velocity)[i - number]
             elif not set_valued(law.code):
                 # Signed by the sense of slip, as bristles may be bent either way.

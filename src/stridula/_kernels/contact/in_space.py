@@ -9,7 +9,7 @@ see `law_in_space`.
 import math
 
 from ..lanes.compiled import inlined, strict, strict_pasted
-from ..lanes.operations import Array, Number, Numbers, Pair, Runs, choose, component, held, hold
+from ..lanes.operations import Array, Number, Runs, choose, component, held, hold
 from ..layout import columns as at
 from ..layout.contact_values import (
     Before,
@@ -19,6 +19,7 @@ from ..layout.contact_values import (
     Free,
     FreeInSpace,
     Law,
+    Tangents,
     Touch,
     TouchInSpace,
 )
@@ -29,6 +30,23 @@ from .exact import SLIDING
 from .lanewise import lanewise
 from .law_in_space import slide_on_its_way
 from .solves import carried_by, solve, strayed
+from .tangents import (
+    ALONG_A,
+    NOTHING,
+    across,
+    along,
+    by_normal,
+    direction_of,
+    left_of,
+    of_tangents,
+    over,
+    plus,
+    scaled,
+    size_of,
+    times,
+    to_normal,
+    under_closed,
+)
 
 # Largest number of trials of a direction of friction; velocity across it that counts as round-off, relative to its
 # terms.
@@ -67,7 +85,7 @@ def whole_compliance(faces: Array, i: int, runs: Runs) -> ComplianceInSpace:
 
 
 @strict_pasted
-def along(w: ComplianceInSpace, way: Pair) -> Compliance:
+def compliance_along(w: ComplianceInSpace, way: Tangents) -> Compliance:
     """Return the compliance of a contact in space along a direction of its tangent plane."""
     c, s = way
     return Compliance(
@@ -79,90 +97,76 @@ def along(w: ComplianceInSpace, way: Pair) -> Compliance:
 
 
 @strict
-def sticking_direction(gap: Number, first: Number, second: Number, w: ComplianceInSpace) -> Numbers:
+def sticking_direction(gap: Number, missed: Tangents, w: ComplianceInSpace) -> tuple[Tangents, Number]:
     """Return the force that would hold a contact against its free displacements (5b): its direction, and its size.
 
     The size is relative to the normal force, infinite where that would pull.
     """
-    a, b = w.aa - w.an * w.na / w.nn, w.ab - w.an * w.nb / w.nn
-    c, d = w.ba - w.bn * w.na / w.nn, w.bb - w.bn * w.nb / w.nn
-    first, second = first - w.an * gap / w.nn, second - w.bn * gap / w.nn
-    determinant = a * d - b * c
-    if abs(determinant) > SINGULAR * (a + d) * (a + d):
-        first, second = (d * first - b * second) / determinant, (a * second - c * first) / determinant
-    size, pressed = math.hypot(first, second), w.na * first + w.nb * second - gap
+    soft = under_closed(w)
+    force = Tangents(missed.a - w.an * gap / w.nn, missed.b - w.bn * gap / w.nn)
+    determinant, trace = soft.aa * soft.bb - soft.ab * soft.ba, soft.aa + soft.bb
+    if abs(determinant) > SINGULAR * trace * trace:
+        turned = Tangents(soft.bb * force.a - soft.ab * force.b, soft.aa * force.b - soft.ba * force.a)
+        force = over(turned, determinant)
+    size, pressed = size_of(force), w.na * force.a + w.nb * force.b - gap
     if size == 0.0:
-        return 1.0, 0.0, 0.0
-    return first / size, second / size, size * w.nn / pressed if pressed > 0.0 else math.inf
+        return ALONG_A, 0.0
+    return over(force, size), size * w.nn / pressed if pressed > 0.0 else math.inf
 
 
 @strict
 def sliding_direction(
-    gap: Number,
-    slips: Pair,
-    w: ComplianceInSpace,
-    mu: Number,
-    carried_on: Pair,
-    guess: Pair,
-) -> tuple[Number, Number, bool]:
+    gap: Number, slips: Tangents, w: ComplianceInSpace, mu: Number, carried_on: Tangents, guess: Tangents
+) -> tuple[Tangents, bool]:
     """Return the direction of friction under a ratio `mu`, by Newton's method, and whether it converged."""
-    c, s = guess
+    way = guess
     for _ in range(NEWTON):
-        free = w.nn - mu * (c * w.na + s * w.nb)
+        free = w.nn - mu * along(to_normal(w), way)
         if not free > 0.0:
-            return c, s, False
+            return way, False
         normal = -gap / free
-        turning = normal * mu * (c * w.nb - s * w.na) / free
+        turning = normal * mu * across(to_normal(w), way) / free
         pulled, more = mu * normal, mu * turning
-        first, second = c * w.aa + s * w.ab, c * w.ba + s * w.bb
-        moved = 9.0 * (slips[0] + w.an * normal - first * pulled) + carried_on[0]
-        swerved = 9.0 * (slips[1] + w.bn * normal - second * pulled) + carried_on[1]
-        across = c * swerved - s * moved
-        moving = 9.0 * (w.an * turning - first * more - (c * w.ab - s * w.aa) * pulled)
-        swerving = 9.0 * (w.bn * turning - second * more - (c * w.bb - s * w.ba) * pulled)
-        slope = c * swerving - s * moving - (c * moved + s * swerved)
+        left = left_of(way)
+        soft, softer = times(of_tangents(w), way), times(of_tangents(w), left)
+        moved = plus(scaled(9.0, plus(plus(slips, normal, by_normal(w)), -pulled, soft)), 1.0, carried_on)
+        moving = scaled(9.0, plus(plus(scaled(turning, by_normal(w)), -more, soft), -pulled, softer))
+        slope = across(moving, way) - along(moved, way)
         if not slope < 0.0:
-            return c, s, False
-        change = -across / slope
+            return way, False
+        change = -across(moved, way) / slope
         if not abs(change) < LONGEST:
-            return c, s, False
+            return way, False
         # The tangent of a small angle equals the angle.
-        c, s = c - s * change, s + c * change
-        size = math.sqrt(c * c + s * s)
-        c, s = c / size, s / size
+        way = plus(way, change, left)
+        way = over(way, math.sqrt(way.a * way.a + way.b * way.b))
         if abs(change) < SETTLED:
-            return c, s, True
-    return c, s, False
+            return way, True
+    return way, False
 
 
 @strict_pasted
-def on(vector: Pair, way: Pair) -> Number:
-    """Return the component of a vector along a direction."""
-    return way[0] * vector[0] + way[1] * vector[1]
-
-
-@strict_pasted
-def free_along(free: FreeInSpace, way: Pair) -> Free:
+def free_along(free: FreeInSpace, way: Tangents) -> Free:
     """Return the motion of a contact in space without its forces, along a direction."""
-    return Free(free.gap, on(free.slips, way), on(free.strays, way), along(free.w, way), free.let_go)
+    return Free(free.gap, along(free.slips, way), along(free.strays, way), compliance_along(free.w, way), free.let_go)
 
 
 @strict_pasted
-def past_along(before: BeforeInSpace, way: Pair) -> Before:
+def past_along(before: BeforeInSpace, way: Tangents) -> Before:
     """Return what a contact in space carries, along a direction."""
     return Before(
         before.status,
-        on(before.slip, way),
-        on(before.earlier_slip, way),
-        before.state[0],
+        along(before.slip, way),
+        along(before.earlier_slip, way),
+        before.state.a,
         before.normal,
-        on(before.tangential, way),
-        on(before.past, way),
+        along(before.tangential, way),
+        along(before.past, way),
     )
 
 
 @strict
-def solve_along(way: Pair, free: FreeInSpace, law: Law, before: BeforeInSpace, step: Number) -> Touch:
+def solve_along(way: Tangents, free: FreeInSpace, law: Law, before: BeforeInSpace, step: Number) -> Touch:
     """Solve a contact in space under Coulomb's law as one of the plane along a direction."""
     status, slip, earlier, state, normal, tangential, past = past_along(before, way)
     # When it is late, no reversal within the step (5d) is considered.
@@ -171,86 +175,78 @@ def solve_along(way: Pair, free: FreeInSpace, law: Law, before: BeforeInSpace, s
 
 
 @strict
-def carried_on_by(before: BeforeInSpace, let_go: Number, pulled: Pair) -> Pair:
+def carried_on_by(before: BeforeInSpace, let_go: Number, pulled: Tangents) -> Tangents:
     """Return the share of the last two slips in the velocity along which friction acts, in units of a ninth of a slip.
 
     Contacts that come to rest together may have no consistent forces with this share; after some sweeps friction
     therefore acts along the slip alone. The same holds where a contact begins to slide against its last slips: it was
     at rest, without a direction.
     """
-    moved, swerved = 6.0 * before.slip[0] + before.earlier_slip[0], 6.0 * before.slip[1] + before.earlier_slip[1]
-    begins = before.status < SLIDING - 0.5 and pulled[0] * moved + pulled[1] * swerved <= 0.0
-    if let_go > 0.0 or begins:
-        return 0.0, 0.0
-    return moved, swerved
+    moved = plus(scaled(6.0, before.slip), 1.0, before.earlier_slip)
+    begins = before.status < SLIDING - 0.5 and along(pulled, moved) <= 0.0
+    return NOTHING if let_go > 0.0 or begins else moved
 
 
 @strict
-def slip_under(way: Pair, normal: Number, tangential: Number, slips: Pair, w: ComplianceInSpace) -> Pair:
+def slip_under(way: Tangents, normal: Number, tangential: Number, slips: Tangents, w: ComplianceInSpace) -> Tangents:
     """Return the slip along both tangents under a normal force and one along a direction."""
-    c, s = way
-    first = slips[0] + w.an * normal - (c * w.aa + s * w.ab) * tangential
-    return first, slips[1] + w.bn * normal - (c * w.ba + s * w.bb) * tangential
+    return plus(plus(slips, normal, by_normal(w)), -tangential, times(of_tangents(w), way))
 
 
 @strict
-def turns_on_its_line(free: FreeInSpace, mu: Number, size: Number, came: Pair) -> bool:
+def turns_on_its_line(free: FreeInSpace, mu: Number, size: Number, came: Tangents) -> bool:
     """Return whether friction along the last slip reverses it with only rounding across.
 
     The velocity then passes zero, near which no direction has velocity across it.
     """
     if size == 0.0:
         return False
-    (c, s), w = came, free.w
-    clear = w.nn - mu * (c * w.na + s * w.nb)
+    clear = free.w.nn - mu * along(to_normal(free.w), came)
     if clear <= 0.0:
         return False
     normal = -free.gap / clear
-    slip, swerve = slip_under(came, normal, mu * normal, free.slips, w)
-    farther, across = c * slip + s * swerve, c * swerve - s * slip
-    return farther < 0.0 and abs(across) <= STRAIGHT * (size - farther)
+    slip = slip_under(came, normal, mu * normal, free.slips, free.w)
+    farther = along(slip, came)
+    return farther < 0.0 and abs(across(slip, came)) <= STRAIGHT * (size - farther)
 
 
 @strict
-def along_way(way: Pair, touch: Touch) -> TouchInSpace:
+def along_way(way: Tangents, touch: Touch) -> TouchInSpace:
     """Return a contact along a direction as one of space."""
-    pulled = touch.tangential * way[0], touch.tangential * way[1]
-    return TouchInSpace(touch.normal, pulled, touch.status, touch.jammed)
+    return TouchInSpace(touch.normal, scaled(touch.tangential, way), touch.status, touch.jammed)
 
 
-@lanewise(TouchInSpace(0.0, (0.0, 0.0), 0.0, 0.0))
+@lanewise(TouchInSpace(0.0, NOTHING, 0.0, 0.0))
 def solve_in_space(free: FreeInSpace, law: Law, before: BeforeInSpace, step: Number) -> TouchInSpace:
     """Do `solves.solve` for a contact in space."""
-    gap, slips, strays, w = free.gap, free.slips, free.strays, free.w
+    gap, slips, w = free.gap, free.slips, free.w
     if gap >= 0.0:
-        return TouchInSpace(0.0, (0.0, 0.0), 0.0, 0.0)
+        return TouchInSpace(0.0, NOTHING, 0.0, 0.0)
     if law.code != at.COULOMB:
         return slide_on_its_way(free, law, before, step)
-    first, second, held = sticking_direction(gap, slips[0] + strays[0], slips[1] + strays[1], w)
-    mu, was, last, guess = law.table[law.row, STATIC], before.status, before.slip, free.guess
+    pulled, held = sticking_direction(gap, plus(slips, 1.0, free.strays), w)
+    mu, was, last = law.table[law.row, STATIC], before.status, before.slip
     may_hold = held <= mu or mu == 0.0
     if not may_hold:
-        strength = math.hypot(guess[0], guess[1])
-        near = (guess[0] / strength, guess[1] / strength) if strength > 0.0 else (first, second)
-        carried_on = carried_on_by(before, free.let_go, (first, second))
-        c, s, found = sliding_direction(gap, slips, w, mu, carried_on, near)
+        carried_on = carried_on_by(before, free.let_go, pulled)
+        near = direction_of(free.guess, pulled)
+        way, found = sliding_direction(gap, slips, w, mu, carried_on, near)
         if found:
-            normal = -gap / (w.nn - mu * (c * w.na + s * w.nb))
-            slip, swerve = slip_under((c, s), normal, mu * normal, slips, w)
+            normal = -gap / (w.nn - mu * along(to_normal(w), way))
+            slip = slip_under(way, normal, mu * normal, slips, w)
             # A reversal within the step (5d) is solved as a contact along a line only.
-            turns = free.let_go == 0.0 and c * last[0] + s * last[1] < 0.0
-            if was < SLIDING - 0.5 or (c * slip + s * swerve >= 0.0 and not turns):
-                return TouchInSpace(normal, (mu * normal * c, mu * normal * s), 2.0, 0.0)
-            first, second = c, s
-    size = math.hypot(last[0], last[1])
-    came = (last[0] / size, last[1] / size) if size > 0.0 else (1.0, 0.0)
+            turns = free.let_go == 0.0 and along(last, way) < 0.0
+            if was < SLIDING - 0.5 or (along(slip, way) >= 0.0 and not turns):
+                return TouchInSpace(normal, scaled(mu * normal, way), 2.0, 0.0)
+            pulled = way
+    size, came = size_of(last), direction_of(last, ALONG_A)
     slid = was > SLIDING - 0.5 and free.let_go == 0.0
     if slid and turns_on_its_line(free, mu, size, came):
         return along_way(came, solve_along(came, free, law, before, step))
-    way, touch = searched((first, second), may_hold, free, law, before, step)
+    way, touch = searched(pulled, may_hold, free, law, before, step)
     if slid and abs(touch.status - SLIDING) < 0.5:
         moved = slip_under(way, touch.normal, touch.tangential, slips, w)
-        if size > 0.0 and touch.tangential * on(moved, way) < 0.0:
+        if size > 0.0 and touch.tangential * along(moved, way) < 0.0:
             # It comes to rest or reverses within the step (5d): along the line of its last slip.
             way, touch = came, solve_along(came, free, law, before, step)
     return along_way(way, touch)
@@ -258,42 +254,40 @@ def solve_in_space(free: FreeInSpace, law: Law, before: BeforeInSpace, step: Num
 
 @strict
 def searched(
-    pulled: Pair, may_hold: bool, free: FreeInSpace, law: Law, before: BeforeInSpace, step: Number
-) -> tuple[Pair, Touch]:
+    pulled: Tangents, may_hold: bool, free: FreeInSpace, law: Law, before: BeforeInSpace, step: Number
+) -> tuple[Tangents, Touch]:
     """Return the direction of friction, by the secant method within a bracket, and the contact along it.
 
     A contact that may be held, and is held along the first direction, sticks.
     """
     carried_on, slips, w = carried_on_by(before, free.let_go, pulled), free.slips, free.w
     turn, low, high = 0.0, -math.inf, math.inf
-    turn_before, across_before = math.nan, math.nan
-    (c, s), touch = pulled, Touch(0.0, 0.0, 0.0, 0.0)
+    turn_before, before_off = math.nan, math.nan
+    way, touch = pulled, Touch(0.0, 0.0, 0.0, 0.0)
     for trial in range(TRIALS):
-        cosine, sine = math.cos(turn), math.sin(turn)
-        c, s = pulled[0] * cosine - pulled[1] * sine, pulled[1] * cosine + pulled[0] * sine
-        touch = solve_along((c, s), free, law, before, step)
+        way = plus(scaled(math.cos(turn), pulled), math.sin(turn), left_of(pulled))
+        touch = solve_along(way, free, law, before, step)
         normal, tangential = touch.normal, touch.tangential
         if trial == 0 and may_hold and abs(touch.status - SLIDING) > 0.5:
             break
         # The direction is that of the velocity, see `contact.velocity_at`.
-        slip, swerve = slip_under((c, s), normal, tangential, slips, w)
-        moved, swerved = 9.0 * slip + carried_on[0], 9.0 * swerve + carried_on[1]
-        across = c * swerved - s * moved
-        size = abs(slips[0]) + abs(slips[1]) + (abs(w.an) + abs(w.bn)) * normal + (w.aa + w.bb) * abs(tangential)
-        if abs(across) <= ACROSS * (9.0 * size + abs(carried_on[0]) + abs(carried_on[1])):
+        moved = plus(scaled(9.0, slip_under(way, normal, tangential, slips, w)), 1.0, carried_on)
+        off = across(moved, way)
+        size = abs(slips.a) + abs(slips.b) + (abs(w.an) + abs(w.bn)) * normal + (w.aa + w.bb) * abs(tangential)
+        if abs(off) <= ACROSS * (9.0 * size + abs(carried_on.a) + abs(carried_on.b)):
             break
         # A force of opposite sign has the slip on the other side.
-        side = across if tangential >= 0.0 else -across
+        side = off if tangential >= 0.0 else -off
         if side > 0.0:
             low = max(low, turn)
         else:
             high = min(high, turn)
-        soft = s * (s * w.aa - c * w.ab) + c * (c * w.bb - s * w.ba)
-        stiff = abs(c * moved + s * swerved) + 9.0 * abs(tangential) * soft
+        soft = along(times(of_tangents(w), left_of(way)), left_of(way))
+        stiff = abs(along(moved, way)) + 9.0 * abs(tangential) * soft
         change = side / stiff if stiff > 0.0 else math.inf
-        if turn != turn_before and abs(across) < 0.5 * abs(across_before) and across != across_before:
-            change = across * (turn - turn_before) / (across_before - across)
-        turn_before, across_before = turn, across
+        if turn != turn_before and abs(off) < 0.5 * abs(before_off) and off != before_off:
+            change = off * (turn - turn_before) / (before_off - off)
+        turn_before, before_off = turn, off
         found = turn + min(max(change, -LONGEST), LONGEST)
         if not low < found < high:
             has_bracket = math.isfinite(low) and math.isfinite(high)
@@ -301,7 +295,7 @@ def searched(
         if found == turn or not low < found < high:
             break
         turn = found
-    return (c, s), touch
+    return way, touch
 
 
 @inlined
@@ -313,24 +307,26 @@ def carried_in_space(carried: Array, i: int, runs: Runs) -> BeforeInSpace:
     first, second = carried_by(carried, i, runs), carried_by(carried, i + 1, runs)
     return BeforeInSpace(
         first.status,
-        (first.slip, second.slip),
-        (first.earlier_slip, second.earlier_slip),
-        (first.state, second.state),
+        Tangents(first.slip, second.slip),
+        Tangents(first.earlier_slip, second.earlier_slip),
+        Tangents(first.state, second.state),
         first.normal,
-        (first.tangential, second.tangential),
-        (first.past, second.past),
+        Tangents(first.tangential, second.tangential),
+        Tangents(first.past, second.past),
     )
 
 
 @inlined
-def free_of_own(contacts: Contacts, carried: Array, i: int, normal: Number, pulled: Pair, runs: Runs) -> FreeInSpace:
+def free_of_own(
+    contacts: Contacts, carried: Array, i: int, normal: Number, pulled: Tangents, runs: Runs
+) -> FreeInSpace:
     """Return the motion of contact `i` without its own forces."""
     faces, w, (first, second) = contacts.faces, whole_compliance(contacts.faces, i, runs), pulled
     gap = component(faces, 2 * i, DISPLACEMENT, runs) - (w.nn * normal - w.na * first - w.nb * second)
     slip = component(faces, 2 * i + 1, DISPLACEMENT, runs) - (w.an * normal - w.aa * first - w.ab * second)
     swerve = component(faces, 2 * i + 3, DISPLACEMENT, runs) - (w.bn * normal - w.ba * first - w.bb * second)
-    strays = strayed(carried, i, runs), strayed(carried, i + 1, runs)
-    return FreeInSpace(gap, (slip, swerve), strays, w, held(contacts.now, i * at.IN_STEP + at.LET_GO, runs), pulled)
+    strays, slips = Tangents(strayed(carried, i, runs), strayed(carried, i + 1, runs)), Tangents(slip, swerve)
+    return FreeInSpace(gap, slips, strays, w, held(contacts.now, i * at.IN_STEP + at.LET_GO, runs), pulled)
 
 
 @inlined
@@ -346,18 +342,16 @@ def put_second(contacts: Contacts, i: int, runs: Runs, goes_on: bool, second: Nu
     return second - was
 
 
-@lanewise((0.0, 0.0))
-def direction(force: Pair, last: Pair) -> Pair:
+@lanewise(NOTHING)
+def direction(force: Tangents, last: Tangents) -> Tangents:
     """Return the direction of a force along both tangents, that of the last force where there is none."""
-    first, second = force if force[0] != 0.0 or force[1] != 0.0 else last
-    size = math.hypot(first, second)
-    return (first / size, second / size) if size > 0.0 else (1.0, 0.0)
+    return direction_of(force if force.a != 0.0 or force.b != 0.0 else last, ALONG_A)
 
 
 @inlined
-def pair_of(array: Array, row: int, further: int, runs: Runs) -> Pair:
+def pair_of(array: Array, row: int, further: int, runs: Runs) -> Tangents:
     """Return the numbers of a contact in space along both tangents."""
-    return held(array, row, runs), held(array, row + further, runs)
+    return Tangents(held(array, row, runs), held(array, row + further, runs))
 
 
 @inlined

@@ -6,12 +6,13 @@ from typing import Any
 from ..lanes.compiled import strict
 from ..lanes.operations import Pair
 from ..layout import columns as at
-from ..layout.contact_values import BeforeInSpace, ComplianceInSpace, FreeInSpace, Law, TouchInSpace
+from ..layout.contact_values import BeforeInSpace, ComplianceInSpace, FreeInSpace, Law, Tangents, TouchInSpace
 from ..layout.laws import NEW_STATE, STATIC
 from .exact import PATIENCE, ROUND_OFF, SLIDING, STICKING, TRIALS, velocity_at
 from .friction import set_valued, sliding_ratio, sticking_speed
 from .lanewise import lanewise
-from .slipping_in_space import plus, ratio_over_step, ratio_with_state, size_of, sticking_forces
+from .slipping_in_space import ratio_over_step, ratio_with_state, sticking_forces
+from .tangents import NOTHING, along, over, plus, scaled, size_of, to_normal
 
 
 @strict
@@ -28,13 +29,11 @@ def ratio_under(normal: float, free: FreeInSpace, law: Law, before: BeforeInSpac
     """
     slips, w = free.slips, free.w
     if set_valued(law.code):
-        found = ratio_over_step(normal, free, law, before, step)
-        return found[0], found[1], before.state, found[2], found[3]
+        ratio, past, status, stuck = ratio_over_step(normal, free, law, before, step)
+        return ratio, past, before.state, status, stuck
     ratio, past, states = ratio_with_state(normal, slips, w, law, before, step)
-    moved = (
-        slips[0] + (w.an - w.aa * ratio[0] - w.ab * ratio[1]) * normal,
-        slips[1] + (w.bn - w.ba * ratio[0] - w.bb * ratio[1]) * normal,
-    )
+    per_normal = Tangents(w.an - w.aa * ratio.a - w.ab * ratio.b, w.bn - w.ba * ratio.a - w.bb * ratio.b)
+    moved = plus(slips, normal, per_normal)
     slow = size_of(moved) < step * sticking_speed(law)
     return ratio, past, states, STICKING if slow else SLIDING, 0.0
 
@@ -46,20 +45,23 @@ def slide_as_prescribed(free: FreeInSpace, law: Law, before: BeforeInSpace, step
     was, last, earlier = before.status, before.slip, before.earlier_slip
     normal, size = -gap / w.nn, size_of(slips)
     if size == 0.0 or size_of(plus(slips, 1.0, strays)) == 0.0:
-        return TouchInSpace(normal, (0.0, 0.0), float(STICKING), 0.0)
-    way = slips[0] / size, slips[1] / size
-    back = last[0] * way[0] + last[1] * way[1]
-    velocity = velocity_at(slips[0], last[0], earlier[0], step), velocity_at(slips[1], last[1], earlier[1], step)
+        return TouchInSpace(normal, NOTHING, float(STICKING), 0.0)
+    way = over(slips, size)
+    back = along(last, way)
+    velocity = Tangents(
+        velocity_at(slips.a, last.a, earlier.a, step),
+        velocity_at(slips.b, last.b, earlier.b, step),
+    )
     speed = size_of(velocity)
     if was == SLIDING and back < 0.0:
         # Sliding on until it stops, then back (5d).
-        turned = sliding_ratio(law, abs(velocity[0] * way[0] + velocity[1] * way[1]))
+        turned = sliding_ratio(law, abs(along(velocity, way)))
         pulled = turned * (size + back) / (size - back) * normal
     else:
         pulled = sliding_ratio(law, speed) * normal
         if was == SLIDING and speed > 0.0:
-            way = velocity[0] / speed, velocity[1] / speed
-    return TouchInSpace(normal, (pulled * way[0], pulled * way[1]), float(SLIDING), 0.0)
+            way = over(velocity, speed)
+    return TouchInSpace(normal, scaled(pulled, way), float(SLIDING), 0.0)
 
 
 @strict
@@ -69,25 +71,24 @@ def slide_on_its_way(free: FreeInSpace, law: Law, before: BeforeInSpace, step: f
     if is_prescribed(law, w):
         return slide_as_prescribed(free, law, before, step)
     if set_valued(law.code) and before.status != SLIDING:
-        pressed, first, second = sticking_forces(gap, plus(slips, 1.0, strays), w)
+        pressed, held = sticking_forces(gap, plus(slips, 1.0, strays), w)
         if pressed > 0.0:
-            tried = ratio_under(pressed, free, law, before, step)
-            if tried[3] == STICKING:
-                most, pulled = law.table[law.row, STATIC], math.hypot(first, second)
-                lifted = most * (first * w.na + second * w.nb) / pulled if pulled > 0.0 else 0.0
-                return TouchInSpace(pressed, (first, second), float(STICKING), 1.0 if w.nn <= lifted else 0.0)
-    share = 1.0 / before.normal if before.normal > 0.0 else 0.0
-    ratio = share * before.tangential[0], share * before.tangential[1]
-    clear = w.nn - ratio[0] * w.na - ratio[1] * w.nb
+            _, _, _, status, _ = ratio_under(pressed, free, law, before, step)
+            if status == STICKING:
+                most, pulled = law.table[law.row, STATIC], size_of(held)
+                lifted = most * along(held, to_normal(w)) / pulled if pulled > 0.0 else 0.0
+                return TouchInSpace(pressed, held, float(STICKING), 1.0 if w.nn <= lifted else 0.0)
+    ratio = scaled(1.0 / before.normal if before.normal > 0.0 else 0.0, before.tangential)
+    clear = w.nn - ratio.a * w.na - ratio.b * w.nb
     normal = -gap / (clear if clear > 0.0 else w.nn)
     status, last, error_before = SLIDING, 0.0, 0.0
     low, high, below, above, settled = 0.0, math.inf, ratio, ratio, False
     for trial in range(TRIALS):
         ratio, _, _, status, _ = ratio_under(normal, free, law, before, step)
-        clear = w.nn - ratio[0] * w.na - ratio[1] * w.nb
+        clear = w.nn - ratio.a * w.na - ratio.b * w.nb
         if clear <= 0.0:
-            pressed, first, second = sticking_forces(gap, plus(slips, 1.0, strays), w)
-            return TouchInSpace(pressed, (first, second), float(STICKING), 1.0)
+            pressed, held = sticking_forces(gap, plus(slips, 1.0, strays), w)
+            return TouchInSpace(pressed, held, float(STICKING), 1.0)
         found = -gap / clear
         error = found - normal
         settled = abs(error) <= ROUND_OFF * found or (w.na == 0.0 and w.nb == 0.0)
@@ -110,16 +111,16 @@ def slide_on_its_way(free: FreeInSpace, law: Law, before: BeforeInSpace, step: f
             break
     if not settled and low > 0.0 and high < math.inf:
         # The ratio jumps at this normal force, where the contact stops or slides on: between both it closes the gap.
-        lifted, more = below[0] * w.na + below[1] * w.nb, above[0] * w.na + above[1] * w.nb
+        lifted, more = along(below, to_normal(w)), along(above, to_normal(w))
         share = min(max((w.nn + gap / normal - lifted) / (more - lifted), 0.0), 1.0) if more != lifted else 0.0
         ratio = plus(below, share, plus(above, -1.0, below))
-    return TouchInSpace(normal, (ratio[0] * normal, ratio[1] * normal), float(status), 0.0)
+    return TouchInSpace(normal, scaled(normal, ratio), float(status), 0.0)
 
 
-@lanewise(((0.0, 0.0), (0.0, 0.0), 0.0))
+@lanewise((NOTHING, NOTHING, 0.0))
 def next_in_space(
     touch: Pair, free: FreeInSpace, law: Law, before: BeforeInSpace, step: float
-) -> tuple[Pair, Pair, float]:
+) -> tuple[Tangents, Tangents, float]:
     """Return past parts of the ratios for the next step, internal states and the share of stick of this step.
 
     `touch` are normal force and status. Where bodies are apart, states are those of new contacts.
@@ -127,8 +128,8 @@ def next_in_space(
     normal, status = touch
     if status < 0.5:
         fresh = law.table[law.row, NEW_STATE]
-        return (0.0, 0.0), (fresh, fresh if law.code == at.LUGRE else 0.0), 0.0
+        return NOTHING, Tangents(fresh, fresh if law.code == at.LUGRE else 0.0), 0.0
     if law.code == at.COULOMB or is_prescribed(law, free.w):
-        return (0.0, 0.0), before.state, 1.0 if status == STICKING else 0.0
+        return NOTHING, before.state, 1.0 if status == STICKING else 0.0
     _, past, states, _, stuck = ratio_under(normal, free, law, before, step)
     return past, states, stuck

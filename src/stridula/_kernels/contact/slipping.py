@@ -12,7 +12,7 @@ import math
 from ..lanes.compiled import strict, strict_pasted
 from ..lanes.operations import Number, Numbers, Pair
 from ..layout import columns as at
-from ..layout.contact_values import Before, Compliance, Free, Law
+from ..layout.contact_values import Before, Compliance, Drive, Free, Law
 from ..layout.laws import BRISTLE_STIFFNESS, FLOOR, KINETIC, SLIP_DISTANCE, SLOPE, STATIC, VELOCITY, VISCOUS
 from .friction import holding_ratio, next_state, ratio_after, sliding_ratio, speed_scale, state_ratio
 
@@ -65,7 +65,7 @@ def part_of(slip: Number, rate: Number, ratio: Number, pull: Number, law: Law, s
 
 @strict
 def slide_through(
-    slip: Number, begin: Number, drive: Pair, pull: Number, sense: Number, law: Law, step: Number
+    slip: Number, begin: Number, drive: Drive, pull: Number, sense: Number, law: Law, step: Number
 ) -> Numbers:
     """Slide from a time of the step on, under a set-valued law.
 
@@ -83,11 +83,11 @@ def slide_through(
         stops = False
         while begin < 1.0:
             r1 = ratio_of(slip, sense, law, step)
-            rate = drive[0] + drive[1] * begin - pull * r1
+            rate = drive.begin + drive.grows * begin - pull * r1
             size = part_of(slip, rate, abs(r1), pull, law, step)
             end = min(begin + size, 1.0)
             size = end - begin
-            middle = drive[0] + drive[1] * (begin + 0.5 * size)
+            middle = drive.begin + drive.grows * (begin + 0.5 * size)
             r2 = ratio_of(slip + 0.5 * size * rate, sense, law, step)
             r3 = ratio_of(slip + 0.5 * size * (middle - pull * r2), sense, law, step)
             r4 = ratio_of(slip + size * (middle - pull * r3), sense, law, step)
@@ -107,7 +107,7 @@ def slide_through(
             later, past, begin, slip = later + more, past + less, end, new
         if not stops:
             return later, past, 0.0
-        first, last = drive[0] + drive[1] * begin, drive[0] + drive[1]
+        first, last = drive.begin + drive.grows * begin, drive.begin + drive.grows
         if max(abs(first), abs(last)) <= held * pull and pull > 0.0:
             more, less = moments(begin, 1.0, first / pull, 0.5 * (first + last) / pull, last / pull)
             return later + more, past + less, 1.0 - begin
@@ -165,7 +165,7 @@ def ratio_over_step(
         grows = needed - earlier
         if free.let_go <= 0.5 and abs(needed) <= held and abs(needed + grows) <= held:
             return needed, 0.5 * needed + grows / 3.0, STICKING, 1.0
-        drive = (pull * driven, pull * grows)
+        drive = Drive(pull * driven, pull * grows)
         if abs(needed) > held:
             sense = 1.0 if needed > 0.0 else -1.0
             slides = sense * ratio_of(0.0, sense, law, step)
@@ -185,7 +185,7 @@ def ratio_over_step(
         if free.let_go <= 0.5 and abs(short) <= held:
             return needed, 0.5 * needed, STICKING, 1.0
         sense = 1.0 if short > 0.0 else -1.0
-        drive = (2.0 * pull * (driven - past), 0.0)
+        drive = Drive(2.0 * pull * (driven - past), 0.0)
         more, rest, stuck = slide_through(0.0, 0.0, drive, pull, sense, law, step)
         return past + more, rest, STOPPED if stuck > 0.0 else SLIDING, stuck
     begun = 0.5 * (last + moved)
@@ -197,7 +197,7 @@ def ratio_over_step(
         past = 0.5 * ratio_of(begun, sense, law, step)
     slip_at_step, change = begun - pull * past, moved - last
     sense = 1.0 if slip_at_step > 0.0 or (slip_at_step == 0.0 and change > 0.0) else -1.0
-    more, rest, stuck = slide_through(slip_at_step, 0.0, (change, 0.0), pull, sense, law, step)
+    more, rest, stuck = slide_through(slip_at_step, 0.0, Drive(change, 0.0), pull, sense, law, step)
     return past + more, rest, STOPPED if stuck > 0.0 else SLIDING, stuck
 
 

@@ -8,9 +8,18 @@ import math
 from typing import Any
 
 from ..lanes.compiled import strict, strict_pasted
-from ..lanes.operations import Number, Numbers, Pair
+from ..lanes.operations import Number, Pair
 from ..layout import columns as at
-from ..layout.contact_values import BeforeInSpace, ComplianceInSpace, FreeInSpace, Law
+from ..layout.contact_values import (
+    BeforeInSpace,
+    ComplianceInSpace,
+    Drive,
+    DriveInSpace,
+    FreeInSpace,
+    Law,
+    Matrix,
+    Tangents,
+)
 from ..layout.laws import BRISTLE_DAMPING, BRISTLE_STIFFNESS, BRISTLE_VISCOUS
 from .friction import (
     bristle_limit,
@@ -36,6 +45,23 @@ from .slipping import (
     parts_with_state,
 )
 from .slipping import slide_through as slide_on_line
+from .tangents import (
+    ALONG_A,
+    NOTHING,
+    along,
+    by_normal,
+    direction_of,
+    left_of,
+    of_tangents,
+    over,
+    plus,
+    scaled,
+    scaled_matrix,
+    size_of,
+    stiffened,
+    times,
+    under_closed,
+)
 
 # Relative determinant of the matrix of the tangents below which it moves along one direction only.
 SINGULAR = 1e-12
@@ -50,81 +76,47 @@ BEYOND = 1e300
 
 
 @strict_pasted
-def plus(first: Pair, share: Number, second: Pair) -> Pair:
-    """Return ``first + share second`` for vectors."""
-    return first[0] + share * second[0], first[1] + share * second[1]
-
-
-@strict_pasted
-def times(matrix: Numbers, vector: Pair) -> Pair:
-    """Return the product of a matrix, rows in turn, and a vector."""
-    return matrix[0] * vector[0] + matrix[1] * vector[1], matrix[2] * vector[0] + matrix[3] * vector[1]
-
-
-@strict_pasted
-def along(vector: Pair, way: Pair) -> Number:
-    """Return the component of a vector along a direction."""
-    return vector[0] * way[0] + vector[1] * way[1]
-
-
-@strict_pasted
-def size_of(vector: Pair) -> Number:
-    """Return the length of a vector."""
-    return math.hypot(vector[0], vector[1])
-
-
-@strict_pasted
-def direction_of(vector: Pair, otherwise: Pair) -> Pair:
-    """Return the direction of a vector, another one if it has none."""
-    size = math.hypot(vector[0], vector[1])
-    return (vector[0] / size, vector[1] / size) if size > 0.0 else otherwise
-
-
-@strict_pasted
-def scaled(matrix: Numbers, by: Number) -> Numbers:
-    """Return a matrix times a number."""
-    return by * matrix[0], by * matrix[1], by * matrix[2], by * matrix[3]
-
-
-@strict_pasted
-def moments_of(begin: Number, end: Number, first: Pair, middle: Pair, last: Pair) -> tuple[Pair, Pair]:
+def moments_of(
+    begin: Number, end: Number, first: Tangents, middle: Tangents, last: Tangents
+) -> tuple[Tangents, Tangents]:
     """Do `slipping.moments` for vectors: the integrals with ``1 - s``, then those with ``s``."""
-    one, other = moments(begin, end, first[0], middle[0], last[0]), moments(begin, end, first[1], middle[1], last[1])
-    return (one[0], other[0]), (one[1], other[1])
+    later_a, past_a = moments(begin, end, first.a, middle.a, last.a)
+    later_b, past_b = moments(begin, end, first.b, middle.b, last.b)
+    return Tangents(later_a, later_b), Tangents(past_a, past_b)
 
 
 @strict_pasted
-def stage_moments(begin: Number, size: Number, first: Pair, second: Pair) -> tuple[Pair, Pair]:
+def stage_moments(begin: Number, size: Number, first: Tangents, second: Tangents) -> tuple[Tangents, Tangents]:
     """Return the integrals of the ratio of two stages over a part, with the weights of this step and of the next.
 
     The mean of the slip over the part is that of its stages.
     """
     left = 1.0 - begin - size
     one, other = (1.0 - STAGE) * (2.0 * STAGE * size + left), STAGE * (STAGE * size + left)
-    later = size * (one * first[0] + other * second[0]), size * (one * first[1] + other * second[1])
+    later = scaled(size, plus(scaled(one, first), other, second))
     one, other = 1.0 - STAGE - one, STAGE - other
-    return later, (size * (one * first[0] + other * second[0]), size * (one * first[1] + other * second[1]))
+    return later, scaled(size, plus(scaled(one, first), other, second))
 
 
 @strict
-def undone_by(matrix: Numbers, vector: Pair) -> Pair:
+def undone_by(matrix: Matrix, vector: Tangents) -> Tangents:
     """Return the force whose displacement under a compliance is a vector, beyond all bounds where there is none."""
     a, b, c, d = matrix
     determinant, trace = a * d - b * c, a + d
     if abs(determinant) > SINGULAR * trace * trace:
-        return (d * vector[0] - b * vector[1]) / determinant, (a * vector[1] - c * vector[0]) / determinant
+        return Tangents((d * vector.a - b * vector.b) / determinant, (a * vector.b - c * vector.a) / determinant)
     size = size_of(vector)
     if size == 0.0:
-        return 0.0, 0.0
-    way = direction_of((a, c) if a >= d else (b, d), (1.0, 0.0))
+        return NOTHING
+    way = direction_of(Tangents(a, c) if a >= d else Tangents(b, d), ALONG_A)
     moved = along(vector, way)
     if trace > 0.0 and size_of(plus(vector, -moved, way)) <= ROUNDING * size:
-        return way[0] * moved / trace, way[1] * moved / trace
-    return BEYOND * vector[0] / size, BEYOND * vector[1] / size
+        return Tangents(way.a * moved / trace, way.b * moved / trace)
+    return Tangents(BEYOND * vector.a / size, BEYOND * vector.b / size)
 
 
 @strict_pasted
-def breaks_at(ratio: Pair, grows: Pair, held: Number) -> Number:
+def breaks_at(ratio: Tangents, grows: Tangents, held: Number) -> Number:
     """Return the share of a step after which a ratio that grows in a straight line from below `held` reaches it."""
     square, half = along(grows, grows), along(ratio, grows)
     missing = held * held - along(ratio, ratio)
@@ -135,7 +127,7 @@ def breaks_at(ratio: Pair, grows: Pair, held: Number) -> Number:
 
 
 @strict
-def slip_after(free: Pair, pull: Numbers, law: Law, step: Number) -> tuple[Pair, Pair]:
+def slip_after(free: Tangents, pull: Matrix, law: Law, step: Number) -> tuple[Tangents, Tangents]:
     """Return the slip ``u = free - pull r`` under a set-valued law, and its ratio: the secant method within a bracket.
 
     The ratio of incipient sliding brings it to rest.
@@ -143,15 +135,14 @@ def slip_after(free: Pair, pull: Numbers, law: Law, step: Number) -> tuple[Pair,
     needed, most = undone_by(pull, free), sliding_ratio(law, 0.0)
     asked = size_of(needed)
     if asked <= most:
-        return (0.0, 0.0), needed
+        return NOTHING, needed
     # With (speed + ratio pull) way = free, the error is the length of 1 over that of the way, less one.
     low, low_error = 0.0, most / asked - 1.0
     high, high_error, side = size_of(free), 1.0, 0
     speed, ratio, way = high, most, free
     for _ in range(TRIALS):
         ratio = sliding_ratio(law, speed / step)
-        stiff = speed + ratio * pull[0], ratio * pull[1], ratio * pull[2], speed + ratio * pull[3]
-        way = undone_by(stiff, free)
+        way = undone_by(stiffened(speed, ratio, pull), free)
         error = 1.0 / size_of(way) - 1.0
         if abs(error) <= SETTLED:
             break
@@ -168,38 +159,38 @@ def slip_after(free: Pair, pull: Numbers, law: Law, step: Number) -> tuple[Pair,
         speed = low - low_error * (high - low) / (high_error - low_error)
         if not low < speed < high:
             speed = 0.5 * (low + high)
-    way = direction_of(way, (1.0, 0.0))
-    return (speed * way[0], speed * way[1]), (ratio * way[0], ratio * way[1])
+    way = direction_of(way, ALONG_A)
+    return scaled(speed, way), scaled(ratio, way)
 
 
 @strict_pasted
 def is_straight(
-    slip: Pair,
-    drive: tuple[Pair, Pair],
-    pull: Numbers,
-    way: Pair,
+    slip: Tangents,
+    drive: DriveInSpace,
+    pull: Matrix,
+    way: Tangents,
 ) -> bool:
     """Return whether a slip stays on its line but for rounding."""
     dragged = times(pull, way)
-    reach = size_of(slip) + size_of(drive[0]) + size_of(drive[1]) + size_of(dragged)
-    across = -way[1], way[0]
-    strays = abs(along(slip, across)) + abs(along(drive[0], across)) + abs(along(drive[1], across))
-    return strays + abs(along(dragged, across)) <= ROUNDING * reach
+    reach = size_of(slip) + size_of(drive.begin) + size_of(drive.grows) + size_of(dragged)
+    left = left_of(way)
+    strays = abs(along(slip, left)) + abs(along(drive.begin, left)) + abs(along(drive.grows, left))
+    return strays + abs(along(dragged, left)) <= ROUNDING * reach
 
 
 @strict
 def slide_straight(
-    slip: Pair, begin: Number, drive: tuple[Pair, Pair], pull: Numbers, way: Pair, law: Law, step: Number
-) -> tuple[Pair, Pair, Number]:
+    slip: Tangents, begin: Number, drive: DriveInSpace, pull: Matrix, way: Tangents, law: Law, step: Number
+) -> tuple[Tangents, Tangents, Number]:
     """Slide along a line, as in the plane."""
-    drives = along(drive[0], way), along(drive[1], way)
+    drives = Drive(along(drive.begin, way), along(drive.grows, way))
     pulled = along(way, times(pull, way))
     later, past, stuck = slide_on_line(along(slip, way), begin, drives, pulled, 1.0, law, step)
-    return (later * way[0], later * way[1]), (past * way[0], past * way[1]), stuck
+    return scaled(later, way), scaled(past, way), stuck
 
 
 @strict
-def hold_from(begin: Number, drive: tuple[Pair, Pair], pull: Numbers, held: Number) -> tuple[Pair, Pair, Number]:
+def hold_from(begin: Number, drive: DriveInSpace, pull: Matrix, held: Number) -> tuple[Tangents, Tangents, Number]:
     """Return the ratios that hold a contact at rest from a time of the step on, until it breaks away or the step ends.
 
     Returns
@@ -209,10 +200,10 @@ def hold_from(begin: Number, drive: tuple[Pair, Pair], pull: Numbers, held: Numb
     end : float
         Time at which it breaks away.
     """
-    first = undone_by(pull, plus(drive[0], begin, drive[1]))
+    first = undone_by(pull, plus(drive.begin, begin, drive.grows))
     if size_of(first) > held:
-        return (0.0, 0.0), (0.0, 0.0), begin
-    last = undone_by(pull, plus(drive[0], 1.0, drive[1]))
+        return NOTHING, NOTHING, begin
+    last = undone_by(pull, plus(drive.begin, 1.0, drive.grows))
     grows = plus(last, -1.0, first)
     share = 1.0 if size_of(last) <= held else breaks_at(first, grows, held)
     end = begin + share * (1.0 - begin) if share < 1.0 else 1.0
@@ -222,12 +213,12 @@ def hold_from(begin: Number, drive: tuple[Pair, Pair], pull: Numbers, held: Numb
 
 
 @strict_pasted
-def part_in_space(slip: Pair, drive: Pair, pull: Numbers, law: Law, step: Number) -> Number:
+def part_in_space(slip: Tangents, drive: Tangents, pull: Matrix, law: Law, step: Number) -> Number:
     """Return the size of the next part of the way: as `slipping.part_of`, and where the slip turns or ends, small."""
     speed = size_of(slip)
     if speed == 0.0:
         return 1.0 / MOST_TURNS
-    friction, way = sliding_ratio(law, speed / step), (slip[0] / speed, slip[1] / speed)
+    friction, way = sliding_ratio(law, speed / step), over(slip, speed)
     dragged = times(pull, way)
     rate = size_of(plus(drive, -friction, dragged))
     part = part_of(speed, rate, friction, along(way, dragged), law, step)
@@ -236,8 +227,8 @@ def part_in_space(slip: Pair, drive: Pair, pull: Numbers, law: Law, step: Number
 
 @strict
 def slide_through(
-    slip: Pair, begin: Number, drive: tuple[Pair, Pair], pull: Numbers, way: Pair, law: Law, step: Number
-) -> tuple[Pair, Pair, Number]:
+    slip: Tangents, begin: Number, drive: DriveInSpace, pull: Matrix, way: Tangents, law: Law, step: Number
+) -> tuple[Tangents, Tangents, Number]:
     """Slide from a time of the step on, under a set-valued law.
 
     `drive` are its value at the beginning of the step and its change over it, `way` the direction if the slip is on a
@@ -246,7 +237,7 @@ def slide_through(
     """
     if is_straight(slip, drive, pull, way):
         return slide_straight(slip, begin, drive, pull, way, law, step)
-    later, past, held = (0.0, 0.0), (0.0, 0.0), holding_ratio(law, True)
+    later, past, held = NOTHING, NOTHING, holding_ratio(law, True)
     # From here on at rest, which it is not yet at the beginning.
     rested = False
     for _ in range(2 * MOST_PARTS):
@@ -258,52 +249,53 @@ def slide_through(
             if end >= 1.0:
                 return later, past, 1.0 - begin
             begin = end
-        driven = plus(drive[0], begin, drive[1])
+        driven = plus(drive.begin, begin, drive.grows)
         size = min(part_in_space(slip, driven, pull, law, step), 1.0 - begin)
-        matrix = scaled(pull, STAGE * size)
-        free = plus(plus(slip, size * STAGE, driven), size * GROWTH_AT_STAGE * size, drive[1])
+        matrix = scaled_matrix(STAGE * size, pull)
+        free = plus(plus(slip, size * STAGE, driven), size * GROWTH_AT_STAGE * size, drive.grows)
         _, first = slip_after(free, matrix, law, step)
-        driven = plus(driven, 0.5 * size, drive[1])
+        driven = plus(driven, 0.5 * size, drive.grows)
         free = plus(plus(slip, size, driven), -size * (1.0 - STAGE), times(pull, first))
         slip, second = slip_after(free, matrix, law, step)
         more, less = stage_moments(begin, size, first, second)
         later, past, begin = plus(later, 1.0, more), plus(past, 1.0, less), begin + size
-        rested = slip[0] == 0.0 and slip[1] == 0.0
+        rested = slip.a == 0.0 and slip.b == 0.0
     return later, past, 0.0
 
 
 @strict
-def ratio_of_stick(gap: Number, missed: Pair, w: ComplianceInSpace, otherwise: Pair) -> Pair:
+def ratio_of_stick(gap: Number, missed: Tangents, w: ComplianceInSpace, otherwise: Tangents) -> Tangents:
     """Return the ratios of the forces that close the gap and undo both slips (5b), others if they pull."""
-    pressed, first, second = sticking_forces(gap, missed, w)
-    if not pressed > 0.0 or max(abs(first), abs(second)) >= 0.5 * BEYOND:
+    pressed, held = sticking_forces(gap, missed, w)
+    if not pressed > 0.0 or is_beyond(held):
         return otherwise
-    return first / pressed, second / pressed
+    return over(held, pressed)
 
 
 @strict
-def sticking_forces(gap: Number, slips: Pair, w: ComplianceInSpace) -> Numbers:
+def sticking_forces(gap: Number, slips: Tangents, w: ComplianceInSpace) -> tuple[Number, Tangents]:
     """Return the forces that close `gap` and undo both slips (5b), beyond all bounds if no force moves a tangent."""
-    tangents = (
-        w.aa - w.an * w.na / w.nn,
-        w.ab - w.an * w.nb / w.nn,
-        w.ba - w.bn * w.na / w.nn,
-        w.bb - w.bn * w.nb / w.nn,
-    )
-    first, second = undone_by(tangents, (slips[0] - w.an * gap / w.nn, slips[1] - w.bn * gap / w.nn))
-    if max(abs(first), abs(second)) >= 0.5 * BEYOND:
-        return -gap / w.nn, first, second
-    return (w.na * first + w.nb * second - gap) / w.nn, first, second
+    missed = Tangents(slips.a - w.an * gap / w.nn, slips.b - w.bn * gap / w.nn)
+    held = undone_by(under_closed(w), missed)
+    if is_beyond(held):
+        return -gap / w.nn, held
+    return (w.na * held.a + w.nb * held.b - gap) / w.nn, held
+
+
+@strict_pasted
+def is_beyond(force: Tangents) -> bool:
+    """Return whether nothing holds a force of `undone_by`."""
+    return max(abs(force.a), abs(force.b)) >= 0.5 * BEYOND
 
 
 @strict
 def after_break(
-    earlier: Pair,
-    needed: Pair,
-    driven: Pair,
+    earlier: Tangents,
+    needed: Tangents,
+    driven: Tangents,
     held: Number,
-    drive: tuple[Pair, Pair],
-    pull: Numbers,
+    drive: DriveInSpace,
+    pull: Matrix,
     law: Law,
     step: Number,
 ) -> tuple[Any, ...]:
@@ -311,16 +303,13 @@ def after_break(
     grows = plus(needed, -1.0, earlier)
     broke = breaks_at(earlier, grows, held)
     sliding = sliding_ratio(law, 0.0)
-    way = direction_of(plus(earlier, broke, grows) if broke > 0.0 else needed, (1.0, 0.0))
-    friction = sliding * way[0], sliding * way[1]
+    way = direction_of(plus(earlier, broke, grows) if broke > 0.0 else needed, ALONG_A)
+    friction = scaled(sliding, way)
     stuck, left, third = 0.5 * broke * broke, 0.5 * (1.0 - broke * broke), broke**3 / 3.0
-    past = (
-        stuck * earlier[0] + grows[0] * third + left * friction[0],
-        stuck * earlier[1] + grows[1] * third + left * friction[1],
-    )
+    past = plus(plus(scaled(stuck, earlier), third, grows), left, friction)
     # Ratios without which it would have kept still, then those of the change of its normal force.
     free = plus(plus(earlier, -1.0, friction), 1.0, plus(driven, -1.0, needed))
-    begun = plus(((1.0 / 3.0 - third) * drive[1][0], (1.0 / 3.0 - third) * drive[1][1]), left, times(pull, free))
+    begun = plus(scaled(1.0 / 3.0 - third, drive.grows), left, times(pull, free))
     more, rest, stuck = slide_through(begun, 0.0, drive, pull, way, law, step)
     return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
 
@@ -335,59 +324,54 @@ def ratio_over_step(
     """
     gap, slips, strays, w = free.gap, free.slips, free.strays, free.w
     was, last, past = before.status, before.slip, before.past
-    pull = normal * w.aa, normal * w.ab, normal * w.ba, normal * w.bb
-    moved = slips[0] + w.an * normal, slips[1] + w.bn * normal
+    pull, moved = scaled_matrix(normal, of_tangents(w)), plus(slips, normal, by_normal(w))
     held = holding_ratio(law, was == STICKING and free.let_go <= 0.5)
-    missed = moved[0] + strays[0], moved[1] + strays[1]
+    missed = plus(moved, 1.0, strays)
     driven = undone_by(pull, missed)
     needed = driven if was == SLIDING else ratio_of_stick(gap, plus(slips, 1.0, strays), w, driven)
     asked = size_of(needed)
-    if was == STICKING and last[0] == 0.0 and last[1] == 0.0:
+    if was == STICKING and last.a == 0.0 and last.b == 0.0:
         # At rest for a step or more: the force grows through the step as it did in the last one.
         share = 1.0 / before.normal if before.normal > 0.0 else 0.0
-        earlier = (share * before.tangential[0], share * before.tangential[1]) if share > 0.0 else needed
+        earlier = scaled(share, before.tangential) if share > 0.0 else needed
         grows = plus(needed, -1.0, earlier)
         beyond = plus(needed, 1.0, grows)
         if free.let_go <= 0.5 and asked <= held and size_of(beyond) <= held:
-            return needed, (0.5 * needed[0] + grows[0] / 3.0, 0.5 * needed[1] + grows[1] / 3.0), STICKING, 1.0
-        drive = missed, times(pull, grows) if asked < BEYOND else (0.0, 0.0)
+            return needed, plus(scaled(0.5, needed), 1.0, over(grows, 3.0)), STICKING, 1.0
+        drive = DriveInSpace(missed, times(pull, grows) if asked < BEYOND else NOTHING)
         if asked > held:
             return after_break(earlier, needed, driven, held, drive, pull, law, step)
         broke = breaks_at(needed, grows, held)
         at_break = plus(needed, broke, grows)
-        way = direction_of(at_break, direction_of(beyond, (1.0, 0.0)))
+        way = direction_of(at_break, direction_of(beyond, ALONG_A))
         first, less = moments_of(0.0, broke, needed, plus(needed, 0.5 * broke, grows), at_break)
-        more, rest, stuck = slide_through((0.0, 0.0), broke, drive, pull, way, law, step)
-        ratio = plus(first, 1.0, more)
-        ratio = ratio[0] + 0.5 * needed[0] - grows[0] / 6.0, ratio[1] + 0.5 * needed[1] - grows[1] / 6.0
+        more, rest, stuck = slide_through(NOTHING, broke, drive, pull, way, law, step)
+        ratio = plus(plus(plus(first, 1.0, more), 0.5, needed), -1.0, over(grows, 6.0))
         return ratio, plus(less, 1.0, rest), STOPPED if stuck > 0.0 else SLIDING, broke + stuck
-    rests = needed, (0.5 * needed[0], 0.5 * needed[1]), STICKING, 1.0
+    rests = needed, scaled(0.5, needed), STICKING, 1.0
     if was == STICKING:
         # It came to rest within the last step.
         if free.let_go <= 0.5 and 2.0 * size_of(plus(needed, -1.0, past)) <= held:
             return rests
-        left = plus(missed, -1.0, times(pull, past))
-        left = 2.0 * left[0], 2.0 * left[1]
-        way = direction_of(left, (1.0, 0.0))
-        more, rest, stuck = slide_through((0.0, 0.0), 0.0, (left, (0.0, 0.0)), pull, way, law, step)
+        left = scaled(2.0, plus(missed, -1.0, times(pull, past)))
+        way = direction_of(left, ALONG_A)
+        more, rest, stuck = slide_through(NOTHING, 0.0, DriveInSpace(left, NOTHING), pull, way, law, step)
         return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
-    begun = 0.5 * (last[0] + moved[0]), 0.5 * (last[1] + moved[1])
-    change = moved[0] - last[0], moved[1] - last[1]
+    begun, change = scaled(0.5, plus(last, 1.0, moved)), plus(moved, -1.0, last)
     if was != SLIDING:
         # It lands: half of its force acts before the step.
         if free.let_go <= 0.5 and asked <= held:
             return rests
-        speed, way = size_of(begun), direction_of(begun, direction_of(change, (1.0, 0.0)))
-        friction = 0.5 * sliding_ratio(law, speed / step)
-        past = friction * way[0], friction * way[1]
+        speed, way = size_of(begun), direction_of(begun, direction_of(change, ALONG_A))
+        past = scaled(0.5 * sliding_ratio(law, speed / step), way)
     slip = plus(begun, -1.0, times(pull, past))
-    way = direction_of(slip, direction_of(change, (1.0, 0.0)))
-    more, rest, stuck = slide_through(slip, 0.0, (change, (0.0, 0.0)), pull, way, law, step)
+    way = direction_of(slip, direction_of(change, ALONG_A))
+    more, rest, stuck = slide_through(slip, 0.0, DriveInSpace(change, NOTHING), pull, way, law, step)
     return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
 
 
 @strict_pasted
-def friction_after(law: Law, state: Pair, speed: Number, time: Number) -> Pair:
+def friction_after(law: Law, state: Tangents, speed: Number, time: Number) -> Pair:
     """Return the factors of the state and of the slip velocity in the ratio of a law with internal state after a time.
 
     Both depend on the speed alone; only LuGre's bristles contribute the first.
@@ -395,32 +379,37 @@ def friction_after(law: Law, state: Pair, speed: Number, time: Number) -> Pair:
     table, row = law.table, law.row
     if law.code == at.LUGRE:
         kept, share, _, _, _ = bristles_over(law, speed, time)
-        felt = table[row, BRISTLE_STIFFNESS] - table[row, BRISTLE_DAMPING] * speed / bristle_limit(law, speed)[0]
+        limit, _ = bristle_limit(law, speed)
+        felt = table[row, BRISTLE_STIFFNESS] - table[row, BRISTLE_DAMPING] * speed / limit
         return felt * kept, felt * time * share + table[row, BRISTLE_DAMPING] + table[row, BRISTLE_VISCOUS]
-    ratio, slope = ratio_after(law, state[0], speed, time)
+    ratio, slope = ratio_after(law, state.a, speed, time)
     return 0.0, ratio / speed if speed > 0.0 else slope
 
 
 @strict_pasted
-def moved_at(speed: Number, free: Pair, pull: Numbers, law: Law, state: Pair, time: Number) -> tuple[Pair, Pair]:
+def moved_at(
+    speed: Number, free: Tangents, pull: Matrix, law: Law, state: Tangents, time: Number
+) -> tuple[Tangents, Tangents]:
     """Return the slip velocity that follows from an assumed speed, and the ratios."""
     holds, drags = friction_after(law, state, speed, time)
-    kept = holds * state[0], holds * state[1]
-    left = plus(free, -1.0, times(pull, kept))
-    stiff = 1.0 + drags * pull[0], drags * pull[1], drags * pull[2], 1.0 + drags * pull[3]
-    share = 1.0 / (stiff[0] * stiff[3] - stiff[1] * stiff[2])
-    velocity = share * (stiff[3] * left[0] - stiff[1] * left[1]), share * (stiff[0] * left[1] - stiff[2] * left[0])
+    kept = scaled(holds, state)
+    left, stiff = plus(free, -1.0, times(pull, kept)), stiffened(1.0, drags, pull)
+    share = 1.0 / (stiff.aa * stiff.bb - stiff.ab * stiff.ba)
+    turned = Tangents(stiff.bb * left.a - stiff.ab * left.b, stiff.aa * left.b - stiff.ba * left.a)
+    velocity = scaled(share, turned)
     return velocity, plus(kept, drags, velocity)
 
 
 @strict
-def velocity_after(free: Pair, pull: Numbers, guess: Number, law: Law, state: Pair, time: Number) -> tuple[Pair, Pair]:
+def velocity_after(
+    free: Tangents, pull: Matrix, guess: Number, law: Law, state: Tangents, time: Number
+) -> tuple[Tangents, Tangents]:
     """Return the slip velocity ``v = free - pull r`` and the ratios of a law with internal state after some time.
 
     At a given speed the law is linear in the velocity; the speed sought is that which results, on the scale
     ``sinh(y)``, so that creep and sliding share one scale: the secant method within a bracket.
     """
-    scale = speed_scale(law, state[0])
+    scale = speed_scale(law, state.a)
     velocity, ratio = moved_at(0.0, free, pull, law, state, time)
     speed = size_of(velocity)
     if speed == 0.0:
@@ -467,80 +456,64 @@ def velocity_after(free: Pair, pull: Numbers, guess: Number, law: Law, state: Pa
 
 
 @strict_pasted
-def state_after(law: Law, state: Pair, velocity: Pair, time: Number) -> Pair:
+def state_after(law: Law, state: Tangents, velocity: Tangents, time: Number) -> Tangents:
     """Return the internal states after some time at a constant slip velocity, exactly."""
     speed = size_of(velocity)
     if law.code == at.LUGRE:
         kept, share, _, _, _ = bristles_over(law, speed, time)
-        taken = time * share
-        return kept * state[0] + taken * velocity[0], kept * state[1] + taken * velocity[1]
-    return next_state(law, state[0], speed, time), state[1]
+        return plus(scaled(kept, state), time * share, velocity)
+    return Tangents(next_state(law, state.a, speed, time), state.b)
 
 
 @strict
-def ratio_of_state(law: Law, state: Pair, velocity: Pair) -> Pair:
+def ratio_of_state(law: Law, state: Tangents, velocity: Tangents) -> Tangents:
     """Return the ratios of a law with internal state at a slip velocity."""
     table, row = law.table, law.row
     speed = size_of(velocity)
     if law.code == at.LUGRE:
-        turned = plus(velocity, -speed / bristle_limit(law, speed)[0], state)
-        stiffness, damping, viscous = (
-            table[row, BRISTLE_STIFFNESS],
-            table[row, BRISTLE_DAMPING],
-            table[row, BRISTLE_VISCOUS],
-        )
-        return (
-            stiffness * state[0] + damping * turned[0] + viscous * velocity[0],
-            stiffness * state[1] + damping * turned[1] + viscous * velocity[1],
-        )
-    ratio, way = state_ratio(law, state[0], speed), direction_of(velocity, (1.0, 0.0))
-    return ratio * way[0], ratio * way[1]
+        limit, _ = bristle_limit(law, speed)
+        turned = plus(velocity, -speed / limit, state)
+        bent = plus(scaled(table[row, BRISTLE_STIFFNESS], state), table[row, BRISTLE_DAMPING], turned)
+        return plus(bent, table[row, BRISTLE_VISCOUS], velocity)
+    return scaled(state_ratio(law, state.a, speed), direction_of(velocity, ALONG_A))
 
 
 @strict
 def ratio_with_state(
-    normal: Number, slips: Pair, w: ComplianceInSpace, law: Law, before: BeforeInSpace, step: Number
-) -> tuple[Pair, ...]:
+    normal: Number, slips: Tangents, w: ComplianceInSpace, law: Law, before: BeforeInSpace, step: Number
+) -> tuple[Tangents, ...]:
     """Return the ratios of forces over a step under a law with internal state, past parts, and the new states.
 
     As `slipping.ratio_with_state`.
     """
     was, last, earlier, state, past = before.status, before.slip, before.earlier_slip, before.state, before.past
-    pull = normal * w.aa, normal * w.ab, normal * w.ba, normal * w.bb
-    moved = slips[0] + w.an * normal, slips[1] + w.bn * normal
-    begun, drive = (0.5 * (last[0] + moved[0]), 0.5 * (last[1] + moved[1])), plus(moved, -1.0, last)
-    grows = 0.0, 0.0
+    pull, moved = scaled_matrix(normal, of_tangents(w)), plus(slips, normal, by_normal(w))
+    begun, drive, grows = scaled(0.5, plus(last, 1.0, moved)), plus(moved, -1.0, last), NOTHING
     if was == SEPARATED:
-        past = ratio_of_state(law, state, (begun[0] / step, begun[1] / step))
-        past = 0.5 * past[0], 0.5 * past[1]
+        past = scaled(0.5, ratio_of_state(law, state, over(begun, step)))
     elif before.normal > 0.0:
         share = changed_to(normal, before.normal)
-        dragged = times((share * w.aa, share * w.ab, share * w.ba, share * w.bb), before.tangential)
-        grows = (
-            drive[0] - (last[0] - earlier[0]) - dragged[0] / before.normal,
-            drive[1] - (last[1] - earlier[1]) - dragged[1] / before.normal,
-        )
+        dragged = times(scaled_matrix(share, of_tangents(w)), before.tangential)
+        grows = plus(plus(drive, -1.0, plus(last, -1.0, earlier)), -1.0, over(dragged, before.normal))
     slip = plus(plus(begun, -1.0, times(pull, past)), -1.0 / 6.0, grows)
     squares = along(slip, slip) + along(drive, drive)
-    pulled = 0.5 * (pull[0] + pull[3])
+    pulled = 0.5 * (pull.aa + pull.bb)
     if squares > 0.0:
         pulled = (along(slip, times(pull, slip)) + along(drive, times(pull, drive))) / squares
     count = parts_with_state(size_of(slip), size_of(drive), pulled, law, step)
-    size, later, rest, speed = 1.0 / count, (0.0, 0.0), (0.0, 0.0), size_of(slip) / step
-    time, matrix = STAGE * size * step, scaled(pull, STAGE * size / step)
+    size, later, rest, speed = 1.0 / count, NOTHING, NOTHING, size_of(slip) / step
+    time, matrix = STAGE * size * step, scaled_matrix(STAGE * size / step, pull)
     for k in range(count):
         begin = k * size
         driven = plus(drive, begin, grows)
         free = plus(plus(slip, size * STAGE, driven), size * GROWTH_AT_STAGE * size, grows)
-        free = free[0] / step, free[1] / step
-        velocity, first = velocity_after(free, matrix, speed, law, state, time)
+        velocity, first = velocity_after(over(free, step), matrix, speed, law, state, time)
         state, speed = state_after(law, state, velocity, size * step - time), size_of(velocity)
         driven = plus(driven, 0.5 * size, grows)
         free = plus(plus(slip, size, driven), -size * (1.0 - STAGE), times(pull, first))
-        free = free[0] / step, free[1] / step
-        velocity, second = velocity_after(free, matrix, speed, law, state, time)
+        velocity, second = velocity_after(over(free, step), matrix, speed, law, state, time)
         state, speed = state_after(law, state, velocity, time), size_of(velocity)
         more, less = stage_moments(begin, size, first, second)
         later, rest = plus(later, 1.0, more), plus(rest, 1.0, less)
-        slip = velocity[0] * step, velocity[1] * step
+        slip = scaled(step, velocity)
     return plus(past, 1.0, later), rest, state

@@ -12,6 +12,7 @@ from ..layout.contact_values import (
     FreeInSpace,
     Indentations,
     Law,
+    Tangents,
     Touch,
     TouchInSpace,
     Yielding,
@@ -81,7 +82,7 @@ def gap_under(free: Any, touch: Any) -> Number:
     pressed, w = free.gap + free.w.nn * touch.normal, free.w
     if len(free) == IN_PLANE:
         return pressed - w.nt * touch.tangential
-    return pressed - w.na * touch.tangential[0] - w.nb * touch.tangential[1]
+    return pressed - w.na * touch.tangential.a - w.nb * touch.tangential.b
 
 
 @inlined
@@ -97,7 +98,7 @@ def without_forces(free: Any, zero: Number) -> Any:
     """Return a contact of the plane or of space without forces."""
     if len(free) == IN_PLANE:
         return Touch(zero, zero, zero, zero)
-    return TouchInSpace(zero, (zero, zero), zero, zero)
+    return TouchInSpace(zero, Tangents(zero, zero), zero, zero)
 
 
 @inlined

@@ -35,6 +35,7 @@ from ..lanes.operations import (
     store,
 )
 from ..layout import columns as at
+from ..layout.contact_values import Tangents
 from ..layout.parts import Contacts, Sizes
 from ..layout.rows import COMPLIANCE, DISPLACEMENT
 from .displacements import displace, displace_in_space
@@ -225,7 +226,7 @@ def change(
         second = held(now, there + at.TANGENTIAL_NOW, runs)
         across = choose(closes, velocity_of(contacts, carried, j + 1, runs), second)
     at_rest = held(contacts.constants, j * at.CONTACT_CONSTANTS + at.AT_REST, runs)
-    c, s = direction((along, across), (runs.zero, runs.zero))
+    c, s = direction(Tangents(along, across), Tangents(runs.zero, runs.zero))
     ratio = choose(moves, at_rest * c, held(now, here + at.RATIO, runs))
     hold(now, here + at.RATIO, runs, choose(stops, runs.zero, ratio))
     hold(now, here + at.STATUS_NOW, runs, wanted)

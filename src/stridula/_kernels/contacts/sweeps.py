@@ -148,9 +148,9 @@ def sweep_once(
         if space is not None:
             in_space = is_second(contacts.codes, i + 1)
             if in_space:
-                normal, (first, second), status, jammed = touch_in_space(i, contacts, carried, step, runs)
-                more, pulled, turned = put_touch(i, Touch(normal, first, status, jammed), done, contacts, runs)
-                swerved = put_second(contacts, i, runs, done < 0.5, second)
+                normal, pulls, status, jammed = touch_in_space(i, contacts, carried, step, runs)
+                more, pulled, turned = put_touch(i, Touch(normal, pulls.a, status, jammed), done, contacts, runs)
+                swerved = put_second(contacts, i, runs, done < 0.5, pulls.b)
                 displace_in_space(faces, sizes.faces, i, runs, more, pulled, swerved)
                 change = largest_of(change, magnitude(swerved))
                 across = component(faces, 2 * i + 3, COMPLIANCE + 2 * i + 3, runs)

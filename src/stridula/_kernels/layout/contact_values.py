@@ -2,7 +2,23 @@
 
 from typing import NamedTuple
 
-from ..lanes.operations import Array, Number, Pair
+from ..lanes.operations import Array, Number
+
+
+class Tangents(NamedTuple):
+    """One number for each of the tangents a and b of a contact in space."""
+
+    a: Number
+    b: Number
+
+
+class Matrix(NamedTuple):
+    """Numbers for pairs of these tangents, row by row."""
+
+    aa: Number
+    ab: Number
+    ba: Number
+    bb: Number
 
 
 class Compliance(NamedTuple):
@@ -94,11 +110,11 @@ class FreeInSpace(NamedTuple):
     """The same along both tangents, and `guess`, the tangential forces from which their direction is sought."""
 
     gap: Number
-    slips: Pair
-    strays: Pair
+    slips: Tangents
+    strays: Tangents
     w: ComplianceInSpace
     let_go: Number
-    guess: Pair
+    guess: Tangents
 
 
 class Before(NamedTuple):
@@ -131,12 +147,12 @@ class BeforeInSpace(NamedTuple):
     """The same along both tangents."""
 
     status: Number
-    slip: Pair
-    earlier_slip: Pair
-    state: Pair
+    slip: Tangents
+    earlier_slip: Tangents
+    state: Tangents
     normal: Number
-    tangential: Pair
-    past: Pair
+    tangential: Tangents
+    past: Tangents
 
 
 class Yielding(NamedTuple):
@@ -167,6 +183,20 @@ class Indentations(NamedTuple):
     earlier: Number
 
 
+class Drive(NamedTuple):
+    """What drives a slip over a step: its value at the beginning, and its change."""
+
+    begin: Number
+    grows: Number
+
+
+class DriveInSpace(NamedTuple):
+    """The same along both tangents."""
+
+    begin: Tangents
+    grows: Tangents
+
+
 class Touch(NamedTuple):
     """Forces of a contact in a step [N], its status, and whether it jams."""
 
@@ -180,7 +210,7 @@ class TouchInSpace(NamedTuple):
     """The same with the forces along both tangents."""
 
     normal: Number
-    tangential: Pair
+    tangential: Tangents
     status: Number
     jammed: Number
 
