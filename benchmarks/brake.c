@@ -15,7 +15,7 @@
 #include "elimination.h"
 #include "layout.h"
 
-enum { PAIR = 2 * CARRIED, MOST_TRIALS = 100, IN_VAIN = 3, NEWTON = 12, STEPS_OF_YIELDING = 40, SEARCHES = 80 };
+enum { MOST_TRIALS = 100, IN_VAIN = 3, NEWTON = 12, STEPS_OF_YIELDING = 40, SEARCHES = 80 };
 
 /* What a step knows of all contacts; `size` is three times their number. */
 typedef struct {
@@ -364,19 +364,24 @@ static Found solve_in_space(const Alone *one, double late)
     return (Found){normal, tangential * c, tangential * s, status};
 }
 
-static inline double strayed(const double *c)
+/* Columns along both tangents. */
+static const int MATERIALS[2] = {MATERIAL, MATERIAL_B}, ANCHORS[2] = {ANCHOR, ANCHOR_B};
+static const int LAST_SLIPS[2] = {LAST_SLIP, LAST_SLIP_B}, EARLIER_SLIPS[2] = {EARLIER_SLIP, EARLIER_SLIP_B};
+static const int PULLS[2] = {LAST_TANGENTIAL, LAST_TANGENTIAL_B};
+
+static inline double strayed(const double *c, int k)
 {
-    return c[STATUS] == 1.0 ? c[MATERIAL] - c[ANCHOR] : 0.0;
+    return c[STATUS] == 1.0 ? c[MATERIALS[k]] - c[ANCHORS[k]] : 0.0;
 }
 
 /* Solve contact i with the others as they are, as it yields: Newton's method for its indentation. */
 static Found solve_one(Contacts *at, int i)
 {
-    const double *c = at->carried + PAIR * i, *other = c + CARRIED, *f = at->forces + 3 * i, *u = at->u + 3 * i;
+    const double *c = at->carried + CARRIED * i, *f = at->forces + 3 * i, *u = at->u + 3 * i;
     const int size = at->size;
     const double late = at->late > 0.0 ? (at->broke[i] > 1 ? 1.0 : 0.25) : 0.0;
-    Alone one = {.mu = at->mu[i], .was = (int)c[STATUS], .last = {c[LAST_SLIP], other[LAST_SLIP]},
-                 .earlier = {c[EARLIER_SLIP], other[EARLIER_SLIP]}, .away = {strayed(c), strayed(other)},
+    Alone one = {.mu = at->mu[i], .was = (int)c[STATUS], .last = {c[LAST_SLIP], c[LAST_SLIP_B]},
+                 .earlier = {c[EARLIER_SLIP], c[EARLIER_SLIP_B]}, .away = {strayed(c, 0), strayed(c, 1)},
                  .guess = {f[1], f[2]}};
     for (int r = 0; r < 3; r++)
         for (int k = 0; k < 3; k++)
@@ -420,7 +425,7 @@ static int put_system(Contacts *at)
         if (!at->status[i])
             continue;
         const double *restrict n = at->w + 3 * i * size, *restrict a = n + size, *restrict b = a + size;
-        const double *c = at->carried + PAIR * i;
+        const double *c = at->carried + CARRIED * i;
         double *restrict along = at->along;
         int e = at->equation[i];
         for (int k = 0; k < size; k++)
@@ -434,7 +439,7 @@ static int put_system(Contacts *at)
             const double *restrict column = k ? b : a;
             for (int r = 0; r < equations; r++)
                 at->m[(e + 1 + k) * size + r] = column[places[r]];
-            at->x[e + 1 + k] = -at->free[3 * i + 1 + k] - strayed(c + k * CARRIED);
+            at->x[e + 1 + k] = -at->free[3 * i + 1 + k] - strayed(c, k);
         }
     }
     return equations;
@@ -442,8 +447,8 @@ static int put_system(Contacts *at)
 
 static inline double velocity(const Contacts *at, int i, int k)
 {
-    const double *c = at->carried + PAIR * i + k * CARRIED;
-    return 9.0 * at->u[3 * i + 1 + k] + (at->late > 0.0 ? 0.0 : 6.0 * c[LAST_SLIP] + c[EARLIER_SLIP]);
+    const double *c = at->carried + CARRIED * i;
+    return 9.0 * at->u[3 * i + 1 + k] + (at->late > 0.0 ? 0.0 : 6.0 * c[LAST_SLIPS[k]] + c[EARLIER_SLIPS[k]]);
 }
 
 /* Put which state each contact wants; return how many want another, and the last of them. */
@@ -489,7 +494,7 @@ static void change_state(Contacts *at, int i)
     at->status[i] = now;
     if (!was) {
         at->may_touch[i] = 1;
-        const double *c = at->carried + PAIR * i, indented = -at->u[3 * i];
+        const double *c = at->carried + CARRIED * i, indented = -at->u[3 * i];
         yield_about(indented, c, share_of(indented, c, at->reach[i] * at->stiffness[i]), at->stiffness[i],
                     at->w[3 * i * at->size + 3 * i], at->give + i, at->beyond + i);
     }
@@ -551,8 +556,9 @@ static int solve_all(Contacts *at, double tolerance, int most_sweeps)
 {
     double before = INFINITY, rounding = 0.0;
     int given_up = 0, sweep;
-    for (int i = 0; i < 2 * at->count; i++)
-        rounding = fmax(rounding, 1e-15 * fabs(at->carried[CARRIED * i + MATERIAL]));
+    for (int i = 0; i < at->count; i++)
+        for (int k = 0; k < 2; k++)
+            rounding = fmax(rounding, 1e-15 * fabs(at->carried[CARRIED * i + MATERIALS[k]]));
     at->late = 0.0;
     for (sweep = 1; sweep <= most_sweeps; sweep++) {
         double change = 0.0, largest = 0.0, misfit = 0.0, reach = 0.0;
@@ -669,7 +675,7 @@ void march(long first_step, long steps, int modes, int pads, int pad, int pairs,
             position[k] = q[k] + increment[k];
         int touching = 0;
         for (int i = 0; i < count; i++) {
-            double *c = carried + PAIR * i;
+            double *c = carried + CARRIED * i;
             const int first = i / facing * pad;
             for (int k = 0; k < 3; k++) {
                 const double *row = rows + (3 * i + k) * modes;
@@ -679,23 +685,22 @@ void march(long first_step, long steps, int modes, int pads, int pad, int pairs,
             }
             at.free[3 * i] += opening[i];
             for (int k = 0; k < 2; k++) {
-                double *own_tangent = c + k * CARRIED;
                 const double met = product(rows + (3 * i + 1 + k) * modes + coupled, passed, 2 * pairs);
-                own_tangent[MATERIAL] += met;
-                own_tangent[ANCHOR] += met;
-                at.free[3 * i + 1 + k] -= belts[2 * i + k] * (n + 1) + own_tangent[MATERIAL];
+                c[MATERIALS[k]] += met;
+                c[ANCHORS[k]] += met;
+                at.free[3 * i + 1 + k] -= belts[2 * i + k] * (n + 1) + c[MATERIALS[k]];
             }
             may_touch[i] = at.free[3 * i] < 0.0 || c[LAST_GAP] < 0.0 || c[EARLIER_GAP] < 0.0;
             touching |= may_touch[i];
         }
         memcpy(at.u, at.free, size * sizeof(double));
         for (int i = 0; i < count; i++) {
-            const double *c = carried + PAIR * i;
+            const double *c = carried + CARRIED * i;
             const int closed = touching && c[STATUS] > 0.5;
             double *f = at.forces + 3 * i;
             f[0] = closed ? c[LAST_NORMAL] : 0.0;
             f[1] = closed ? c[LAST_TANGENTIAL] : 0.0;
-            f[2] = closed ? c[CARRIED + LAST_TANGENTIAL] : 0.0;
+            f[2] = closed ? c[LAST_TANGENTIAL_B] : 0.0;
             status[i] = f[0] > 0.0 ? (int)c[STATUS] : 0;
             may_touch[i] |= f[0] > 0.0;
             broke[i] = 0;
@@ -741,7 +746,7 @@ void march(long first_step, long steps, int modes, int pads, int pad, int pairs,
         ledger[DAMPING_LOSS] += lost + 0.25 * taken;
         double work = 0.5 * exchanged, driven = 0.0;
         for (int i = 0; i < count; i++) {
-            double *c = carried + PAIR * i, *other = c + CARRIED;
+            double *c = carried + CARRIED * i;
             const double *f = at.forces + 3 * i, *u = at.u + 3 * i, *by = turning + 3 * i;
             const double earlier = fmax(-c[EARLIER_GAP], 0.0), last = fmax(-c[LAST_GAP], 0.0), now = fmax(-u[0], 0.0);
             const double size_of = sqrt(f[1] * f[1] + f[2] * f[2]);
@@ -754,16 +759,15 @@ void march(long first_step, long steps, int modes, int pads, int pad, int pairs,
             sums[3] += f[2];
             sums[4 + status[i]] += 1.0;
             for (int k = 0; k < 2; k++) {
-                double *tangent = k ? other : c;
                 if (status[i] == 1 && c[STATUS] != 1.0)
-                    tangent[ANCHOR] = tangent[MATERIAL];
-                tangent[MATERIAL] += u[1 + k];
-                tangent[EARLIER_SLIP] = tangent[LAST_SLIP];
-                tangent[LAST_SLIP] = u[1 + k];
-                tangent[LAST_NORMAL] = f[0];
-                tangent[LAST_TANGENTIAL] = f[1 + k];
+                    c[ANCHORS[k]] = c[MATERIALS[k]];
+                c[MATERIALS[k]] += u[1 + k];
+                c[EARLIER_SLIPS[k]] = c[LAST_SLIPS[k]];
+                c[LAST_SLIPS[k]] = u[1 + k];
+                c[PULLS[k]] = f[1 + k];
             }
-            c[STATUS] = other[STATUS] = status[i];
+            c[LAST_NORMAL] = f[0];
+            c[STATUS] = status[i];
             c[EARLIEST_GAP] = c[EARLIER_GAP];
             c[EARLIER_GAP] = c[LAST_GAP];
             c[LAST_GAP] = u[0];

@@ -39,6 +39,7 @@ STEP, RATIO, STEPS = 5e-6, 10, sized(200, 20)
 # Steps before those that are timed.
 BEFORE = {"sliding": 10, "squealing": sized(1000, 40)}
 TOLERANCE, BAR = 1e-6, 1.6
+LAST_FORCES = [at.LAST_NORMAL, at.LAST_TANGENTIAL, at.LAST_TANGENTIAL_B]
 MATRICES = [at.KEPT, at.STIFFNESS, at.MOBILITY, at.LOSS]
 
 
@@ -82,10 +83,10 @@ class Pair:
         march = self.march.copy()
         (chunk,) = march.advance([self.case.imposed], STEPS // RATIO)
         (state,) = march.states
-        forces = chunk.contacts[:, :, [at.NORMAL_FORCE, at.TANGENTIAL_FORCE]].sum(axis=0).reshape(-1, 4)
+        forces = chunk.contacts[:, :, [at.NORMAL_FORCE, at.TANGENTIAL_FORCE, at.TANGENTIAL_FORCE_B]]
         return {
-            "forces": forces[:, [0, 1, 3]].sum(axis=0),
-            "last forces": state.carried[:, [at.LAST_NORMAL, at.LAST_TANGENTIAL]],
+            "forces": forces.sum(axis=(0, 1)),
+            "last forces": state.carried[:, LAST_FORCES],
             "positions": state.modal[at.Q],
             "ledgers": state.energies[[at.CONTACT_WORK, at.FRICTION_LOSS, at.DAMPING_LOSS]],
         }
@@ -113,10 +114,8 @@ class Pair:
     def in_c(self) -> dict[str, np.ndarray]:
         """Return the arrays that C reads and writes."""
         modes, contacts, state = self.case.blocks.modes, self.case.blocks.contacts, deepcopy(self.case.state)
-        scale, order, count = scale_of(modes), self.order(), len(contacts.codes) // 2
+        scale, order, count = scale_of(modes), self.order(), len(contacts.codes)
         size, pad = 3 * count, modes.coupled // 2
-        # The second pair of a contact has no normal.
-        three = np.arange(4 * count).reshape(-1, 4)[:, [0, 1, 3]].ravel()
         matrices = modes.matrices[MATRICES]
         own = np.array([matrices[:, here, here] for here in (slice(0, pad), slice(pad, None))])
         loads = self.case.imposed.signals[0, : len(modes.loads)] @ modes.loads
@@ -125,11 +124,10 @@ class Pair:
         return {
             "kept": modes.block[at.B, order], "stiffness": modes.block[at.R, order], "load": (loads / scale)[order],
             "matrices": own, "turns": self.turns(),
-            "rows": (contacts.rows.reshape(4 * count, -1) * scale)[np.ix_(three, order)],
-            "w": contacts.compliance[np.ix_(three, three)].T, "opening": contacts.constants[::2, at.GAP],
-            "yields": contacts.constants[::2, at.YIELD_STIFFNESS],
-            "reaches": contacts.constants[::2, at.YIELD_REACH], "mu": contacts.laws[::2, 0],
-            "belts": motion[1, :, at.TRACK_MOTION] - motion[0, :, at.TRACK_MOTION],
+            "rows": (contacts.rows * scale)[:, order], "w": contacts.compliance.T,
+            "opening": contacts.constants[:, at.GAP], "yields": contacts.constants[:, at.YIELD_STIFFNESS],
+            "reaches": contacts.constants[:, at.YIELD_REACH], "mu": contacts.laws[:, 0],
+            "belts": (motion[1] - motion[0])[:, [at.TRACK_MOTION, at.TRACK_MOTION_B]],
             "q": q, "d": d, "carried": state.carried, "ledger": np.zeros(at.ENERGIES), "sums": np.zeros(7),
             "scratch": aligned(1, 10 * scale.size + 12 * size + size * size)[0],
         }  # fmt: skip
@@ -154,7 +152,7 @@ class Pair:
         positions[self.order()] = arrays["q"]
         return {
             "forces": arrays["sums"][1:4] / RATIO,
-            "last forces": arrays["carried"][:, [at.LAST_NORMAL, at.LAST_TANGENTIAL]],
+            "last forces": arrays["carried"][:, LAST_FORCES],
             "positions": positions * scale_of(modes),
             "ledgers": arrays["ledger"][[at.CONTACT_WORK, at.FRICTION_LOSS, at.DAMPING_LOSS]],
         }

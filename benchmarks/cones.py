@@ -48,17 +48,13 @@ def here(case: Case) -> np.ndarray:
     """Return the forces of the march, with the signs of the push, shape (3 contacts,)."""
     compliance, free, friction = case
     count = len(friction)
-    pairs = np.zeros((4 * count, 4 * count))
-    where = (4 * np.arange(count)[:, None] + [0, 1, 3]).ravel()
-    pairs[np.ix_(where, where)] = compliance
-    laws = np.zeros((2 * count, LAW_COLUMNS))
-    laws[:, STATIC] = np.repeat(friction, 2)
-    gaps, slips = np.zeros(2 * count), free.reshape(-1, 3)[:, 1:].ravel()
-    gaps[::2] = free[::3]
-    codes = np.tile([at.COULOMB, at.SECOND_TANGENT], count)
-    carried = np.zeros((2 * count, at.CARRIED))
-    found = forces_of(gaps, slips, pairs, (codes, laws), carried, 1.0, GaussSeidel(1e-13, 10000))
-    return np.column_stack([found[::2, 0], -found[::2, 1], -found[1::2, 1]]).ravel()
+    laws = np.zeros((count, LAW_COLUMNS))
+    laws[:, STATIC] = friction
+    given = free.reshape(-1, 3)
+    codes, carried = np.full(count, at.COULOMB), np.zeros((count, at.CARRIED))
+    solve = GaussSeidel(1e-13, 10000)
+    found = forces_of(given[:, 0], given[:, 1:], compliance, (codes, laws), carried, 1.0, solve)
+    return np.asarray(found * [1.0, -1.0, -1.0]).ravel()
 
 
 def residual(case: Case, forces: np.ndarray) -> float:

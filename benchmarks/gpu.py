@@ -160,7 +160,7 @@ def on_the_processor(at: Timing) -> float:
 
 def operations(blocks: Blocks) -> int:
     """Return the operations of a step, as counted above."""
-    modes = blocks.contacts.rows.shape[2]
+    modes = blocks.contacts.rows.shape[1]
     bending, axial = (int(b - a) for a, b in blocks.contacts.spans[0].reshape(-1, 2)[1:])
     return 25 * (modes - bending - axial) + 28 * (bending + axial) + 6 * max(bending, axial)
 

@@ -56,7 +56,7 @@ class Pair:
         q, d = (np.ascontiguousarray(row) for row in state.modal / scale)
         arrays = {
             "kept": modes.block[at.B], "stiffness": modes.block[at.R], "load": modes.loads.sum(axis=0) / scale,
-            "rows": contacts.rows.reshape(size, number) * scale, "w": contacts.compliance.T,
+            "rows": contacts.rows * scale, "w": contacts.compliance.T,
             "opening": contacts.constants[:, at.GAP], "q": q, "d": d, "carried": state.carried.ravel(),
             "ledger": np.zeros(at.ENERGIES), "sums": np.zeros(6),
             "scratch": aligned(1, 3 * number + 4 * size + 3 * count + size * size)[0],

@@ -164,6 +164,8 @@ FLOORS = {
         at.CONTACT_HEIGHT: LENGTH,
         at.CONTACT_GAP: LENGTH,
         at.SLIP_VELOCITY: VELOCITY,
+        at.CONTACT_POSITION_B: LENGTH,
+        at.SLIP_VELOCITY_B: VELOCITY,
     },
     "carried": dict.fromkeys(
         (
@@ -175,6 +177,11 @@ FLOORS = {
             at.LAST_GAP,
             at.EARLIER_GAP,
             at.EARLIEST_GAP,
+            at.MATERIAL_B,
+            at.ANCHOR_B,
+            at.ABSCISSA_B,
+            at.LAST_SLIP_B,
+            at.EARLIER_SLIP_B,
         ),
         LENGTH,
     ),

@@ -23,8 +23,7 @@ LAW = st.LuGre(0.6, 0.35, 0.05, 2e4, 8.0, 0.2)
 
 def test_one_step_has_the_forces_of_root_finding():
     random, step, speeds = np.random.default_rng(11), 1e-4, []
-    codes = np.array([at.LUGRE, at.SECOND_TANGENT])
-    laws = np.zeros((2, LAW_COLUMNS))
+    codes, laws = np.array([at.LUGRE]), np.zeros((1, LAW_COLUMNS))
     laws[:, :6] = list(LAW.parameters().values())
     for _ in range(100):
         w, gap = compliance_of(random), -(10.0 ** random.uniform(-8.0, -5.0))
@@ -44,11 +43,9 @@ def test_one_step_has_the_forces_of_root_finding():
         )
         normal, (ratios, _, after) = closing(gap, w, partial(on_bristles, before, slip, w, step))
         carried = carried_of(before, z)
-        compliance = np.zeros((4, 4))
-        compliance[np.ix_([0, 1, 3], [0, 1, 3])] = w
-        found = forces_of(np.array([gap, 0.0]), slip, compliance, (codes, laws), carried, step, GaussSeidel())
+        found = forces_of(np.array([gap]), slip[None], w, (codes, laws), carried, step, GaussSeidel())
         assert found[0, 0] == pytest.approx(normal, rel=1e-9)
-        np.testing.assert_allclose(found[:, 1], normal * ratios, atol=1e-8 * normal)
+        np.testing.assert_allclose(found[0, 1:], normal * ratios, atol=1e-8 * normal)
         speeds.append(np.linalg.norm(after - z) / step)
     # Creep and sliding.
     assert np.mean(np.array(speeds) < LAW.velocity) > 0.1
@@ -58,8 +55,8 @@ def test_one_step_has_the_forces_of_root_finding():
 @pytest.mark.parametrize("law", [st.StaticKinetic(0.5, 0.3), st.Stribeck(0.5, 0.3, 0.05)], ids=["constant", "falling"])
 def test_one_step_of_a_slip_that_turns_has_the_forces_of_root_finding(law):
     random, step, turned = np.random.default_rng(12), 1e-4, []
-    codes = np.array([at.STATIC_KINETIC if law.law == "static-kinetic" else at.STRIBECK, at.SECOND_TANGENT])
-    laws = np.zeros((2, LAW_COLUMNS))
+    codes = np.array([at.STATIC_KINETIC if law.law == "static-kinetic" else at.STRIBECK])
+    laws = np.zeros((1, LAW_COLUMNS))
     laws[:, : len(law.parameters())] = list(law.parameters().values())
     for _ in range(100):
         w, gap = compliance_of(random), -(10.0 ** random.uniform(-7.0, -6.0))
@@ -70,12 +67,10 @@ def test_one_step_of_a_slip_that_turns_has_the_forces_of_root_finding(law):
         normal, found = closing(gap, w, partial(sliding, law, last, before.past, slip, w, step))
         if found is None:
             continue
-        compliance = np.zeros((4, 4))
-        compliance[np.ix_([0, 1, 3], [0, 1, 3])] = w
         carried = carried_of(before, np.zeros(2))
-        forces = forces_of(np.array([gap, 0.0]), slip, compliance, (codes, laws), carried, step, GaussSeidel())
+        forces = forces_of(np.array([gap]), slip[None], w, (codes, laws), carried, step, GaussSeidel())
         assert forces[0, 0] == pytest.approx(normal, rel=1e-9)
-        np.testing.assert_allclose(forces[:, 1], normal * found[0], atol=1e-8 * normal)
+        np.testing.assert_allclose(forces[0, 1:], normal * found[0], atol=1e-8 * normal)
         turned.append(abs(way[0] * found[0][1] - way[1] * found[0][0]) / np.linalg.norm(found[0]))
     assert len(turned) > 30
     assert np.mean(np.array(turned) > 0.1) > 0.2
@@ -88,12 +83,17 @@ def compliance_of(random):
 
 
 def carried_of(before, state):
-    """What a contact of that past carries, a row for each tangent."""
-    carried = np.zeros((2, at.CARRIED))
-    carried[:, at.STATUS], carried[:, at.LAST_NORMAL] = before.status, before.normal
-    carried[:, at.LAST_SLIP], carried[:, at.EARLIER_SLIP] = before.slip, before.earlier_slip
-    carried[:, at.LAST_TANGENTIAL], carried[:, at.PAST_RATIO] = before.tangential, before.past
-    carried[:, at.FRICTION_STATE] = state
+    """What a contact of that past carries."""
+    carried = np.zeros((1, at.CARRIED))
+    carried[0, at.STATUS], carried[0, at.LAST_NORMAL] = before.status, before.normal
+    for along_a, along_b, values in (
+        (at.LAST_SLIP, at.LAST_SLIP_B, before.slip),
+        (at.EARLIER_SLIP, at.EARLIER_SLIP_B, before.earlier_slip),
+        (at.LAST_TANGENTIAL, at.LAST_TANGENTIAL_B, before.tangential),
+        (at.PAST_RATIO, at.PAST_RATIO_B, before.past),
+        (at.FRICTION_STATE, at.FRICTION_STATE_B, state),
+    ):
+        carried[0, [along_a, along_b]] = values
     return carried
 
 

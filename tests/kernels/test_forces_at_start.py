@@ -39,9 +39,9 @@ def test_a_single_contact_has_the_forces_that_it_has_beside_another(law):
         else:
             carried[:, at.MATERIAL] = 0.1 * random.standard_normal()
         given = (both, (codes, laws), carried)
-        pair = forces_of(np.array([gap, gap]), np.array([slip, slip]), *given, step, GaussSeidel(tolerance=1e-13))
+        pair = forces_of(np.array([gap, gap]), np.array([[slip], [slip]]), *given, step, GaussSeidel(tolerance=1e-13))
         alone = forces_of(
-            np.array([gap]), np.array([slip]), one, (codes[:1], laws[:1]), carried[:1], step, GaussSeidel()
+            np.array([gap]), np.array([[slip]]), one, (codes[:1], laws[:1]), carried[:1], step, GaussSeidel()
         )
         np.testing.assert_allclose(alone, pair[:1], rtol=TOLERANCE)
         ratios.append(alone[0, 1] / alone[0, 0])

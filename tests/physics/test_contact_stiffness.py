@@ -291,7 +291,7 @@ def test_several_contacts_obey_their_laws_at_every_step(scheme):
             continue
         indented = -gap[:, k]
         path = list(zip(indented[3:], indented[2:-1], indented[1:-2], indented[:-3], strict=True))
-        yields = Yielding(*contact.yields.numbers, reach[2 * k])
+        yields = Yielding(*contact.yields.numbers, reach[k])
         known = [
             press(x, past, yields, share_of(x, past, yields), step)[0]
             for x, past in ((one[0], Indentations(*one[1:])) for one in path)

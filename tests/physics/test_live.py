@@ -107,7 +107,7 @@ def test_an_open_contact_keeps_its_opening_and_a_closed_one_stays_closed():
         assert changed(live, "judder", slider__length=0.5354 - 1e-5 * (number % 2))
         gap = float(live.now.gaps[0])
         arrays, state = live.now.arrays, live.now.state
-        rows = live.now.blocks.contacts.rows[0, 0].copy()
+        rows = live.now.blocks.contacts.rows[0].copy()
         track = arrays.contacts[0].bending
         rows[slice(track[0], arrays.contacts[0].axial[1])] = -live.system.track.trace(last["contact_position"])[1]
         opening = arrays.contacts[0].contact.gap + rows @ state.modal[0]

@@ -7,7 +7,15 @@ import math
 
 from .books.bookkeeping import credit, stored_in_contacts
 from .books.leaving import end, leave
-from .books.recording import begin_sample, height_of, keep_probes, record_contact, record_energies, remember_probes
+from .books.recording import (
+    begin_sample,
+    height_of,
+    keep_probes,
+    record_along_b,
+    record_contact,
+    record_energies,
+    remember_probes,
+)
 from .lanes.compiled import entry, pasted
 from .lanes.operations import INTEGER, TRUTH, Runs, anywhere, choose, everywhere, hold, magnitude, placed
 from .layout import columns as at
@@ -25,29 +33,32 @@ from .trying import complete_one, gap_of
 @pasted
 def begin(parts: Parts, runs: Runs) -> None:
     """Save the initial values of the probes."""
-    first = CONTACTS + 2 * parts.sizes.contacts + 2 * parts.sizes.loads
+    first = CONTACTS + parts.sizes.rows + 2 * parts.sizes.loads
     probes = parts.probes
     remember_probes(parts.modes.rows, first, probes.kinds, probes.spans, probes.last, runs)
 
 
 @pasted
-def begin_row(parts: Parts, runs: Runs) -> None:
+def begin_row(space: bool | None, parts: Parts, runs: Runs) -> None:
     """Begin the sums of a sample."""
-    begin_sample(parts.contacts.sums, parts.state.carried, parts.sizes.contacts, runs)
+    begin_sample(space, parts.contacts.sums, parts.state.carried, parts.sizes.contacts, runs)
     hold(parts.state.energies, at.ITERATIONS, runs, runs.zero)
     hold(parts.state.energies, at.UNSOLVED, runs, runs.zero)
 
 
 @pasted
-def record_row(parts: Parts, sample: int, n: int, runs: Runs) -> None:
+def record_row(space: bool | None, parts: Parts, sample: int, n: int, runs: Runs) -> None:
     """Record energies and contacts after the steps of a sample."""
     contacts, paths, state = parts.contacts, parts.paths, parts.state
     record_energies(state.energies, parts.records.energies, sample, runs)
     after = n + 1 if parts.imposed.motion.shape[0] > 1 else 0
     for i in range(parts.sizes.contacts):
         height = gap_of(i, contacts.constants, parts.imposed.motion, after, runs)
-        height += height_of(parts.modes.rows, i, paths.spans, paths.first_span[i], paths.first_span[i + 1], runs)
+        spans, normal = paths.spans, contacts.rows[i]
+        height += height_of(parts.modes.rows, normal, spans, paths.first_span[i], paths.first_span[i + 1], runs)
         record_contact(i, height, parts, sample, runs)
+        if space is not None:
+            record_along_b(i, parts, sample, runs)
 
 
 @entry
@@ -67,7 +78,7 @@ def march(single: bool | None, several: bool | None, space: bool | None, place: 
     touch, tried = Touch(zero, zero, zero, zero), Tried(zero, zero, zero, Compliance(zero, zero, zero, zero))
     n, pending, sine, advance = INTEGER(0), TRUTH(False), INTEGER(SINE), zero
     for sample in range(parts.records.energies.shape[0]):
-        begin_row(parts, runs)
+        begin_row(space, parts, runs)
         for i in range(timing.steps_per_sample):
             change_loads(parts, n, runs)
             if single is not None:
@@ -94,7 +105,7 @@ def march(single: bool | None, several: bool | None, space: bool | None, place: 
                 if space is not None:
                     credit_turning(parts, runs)
             if not pending:
-                keep_probes(parts, n, runs)
+                keep_probes(space, parts, n, runs)
             n += 1
         if everywhere(ended > 0.0):
             break
@@ -108,5 +119,5 @@ def march(single: bool | None, several: bool | None, space: bool | None, place: 
             ended, completed = leave(ended, completed, leaves, why, sample, parts.state, runs)
             if everywhere(ended > 0.0):
                 break
-        record_row(parts, sample, n, runs)
+        record_row(space, parts, sample, n, runs)
     end(parts, ended, completed, runs)

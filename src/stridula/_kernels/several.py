@@ -2,13 +2,14 @@
 
 from .books.bookkeeping import (
     credit,
+    driven_along_b,
     driven_work,
     keep_anchor,
     keep_books,
     keep_forces,
-    keep_motion,
+    keep_gap,
     keep_place,
-    keep_tangential,
+    keep_slip,
     share_states,
     store_in,
 )
@@ -19,14 +20,13 @@ from .contact.in_space import (
     direction,
     free_along,
     free_in_space,
-    is_second,
-    pair_of,
     past_along,
+    strayed_in_space,
     whole_compliance,
 )
 from .contact.law_in_space import next_in_space
-from .contact.solves import law_of, resting, strayed
-from .contact.tangents import along
+from .contact.solves import law_of, strayed_in_plane
+from .contact.tangents import along, held_along, hold_along
 from .contact.yielding import about_indentation, comes_close
 from .contacts.circles import convected
 from .contacts.displacements import own_compliance
@@ -36,8 +36,8 @@ from .lanes.operations import Number, Pair, Runs, add, anywhere, choose, compone
 from .layout import columns as at
 from .layout.contact_values import Free, FreeInSpace, Moved, Tangents, Touch
 from .layout.parts import Carried, Contacts, Parts, Sizes
-from .layout.rows import DISPLACEMENT
-from .trying import complete_many, place_after, soften, try_many
+from .layout.rows import DISPLACEMENT, has_b
+from .trying import complete_many, place_after, place_after_along_b, soften, try_many
 
 # Error of the contact forces, relative to the largest, above which the run stops.
 UNBELIEVABLE = 1e-3
@@ -47,7 +47,7 @@ UNBELIEVABLE = 1e-3
 def solve_several(space: bool | None, parts: Parts, runs: Runs) -> Number:
     """Set forces, status, gap and slip of all contacts (steps 4 and 5); return the error of the forces."""
     sizes, contacts, state, timing = parts.sizes, parts.contacts, parts.state, parts.timing
-    now, faces, count = contacts.now, contacts.faces, sizes.contacts
+    now, count = contacts.now, sizes.contacts
     touching, closed = runs.zero, runs.zero
     for i in range(count):
         gap = held(now, i * at.IN_STEP + at.FREE_GAP, runs)
@@ -55,26 +55,31 @@ def solve_several(space: bool | None, parts: Parts, runs: Runs) -> Number:
         touching = choose(close > 0.5, 1.0, touching)
         closed = choose(held(state.carried, i * at.CARRIED + at.STATUS, runs) > 0.5, 1.0, closed)
     if sizes.paths and (anywhere(touching > 0.5) or anywhere(closed > 0.5)):
-        soften(parts.modes, parts.paths, contacts, sizes, runs)
+        soften(space, parts.modes, parts.paths, contacts, sizes, runs)
     made, error = solve_closed(space, contacts, state.carried, touching, sizes, timing, runs)
     most = held(state.energies, at.ITERATIONS, runs)
     hold(state.energies, at.ITERATIONS, runs, choose(made > most, made, most))
     add(state.energies, at.UNSOLVED, runs, choose(error <= timing.tolerance, runs.zero, 1.0))
     for i in range(count):
-        here, w = i * at.IN_STEP, own_compliance(faces, i, runs)
-        normal, tangential = held(now, here + at.NORMAL_NOW, runs), held(now, here + at.TANGENTIAL_NOW, runs)
-        gap, slip = (
-            component(faces, 2 * i, DISPLACEMENT, runs),
-            component(faces, 2 * i + 1, DISPLACEMENT, runs),
-        )
-        hold(now, here + at.NEW_GAP, runs, gap)
-        hold(now, here + at.NEW_SLIP, runs, slip)
         # From here on, free gap and slip lack the forces of this contact only.
-        hold(now, here + at.FREE_GAP, runs, gap - w.nn * normal + w.nt * tangential)
-        hold(now, here + at.FREE_SLIP, runs, slip - w.tn * normal + w.tt * tangential)
-    if space is not None:
-        free_in_space(contacts, sizes, runs)
+        if space is not None and has_b(contacts.rows, i):
+            free_in_space(i, contacts, runs)
+        else:
+            free_in_plane(i, contacts, runs)
     return error
+
+
+@inlined
+def free_in_plane(i: int, contacts: Contacts, runs: Runs) -> None:
+    """Set gap and slip of contact `i`, and those that lack its own forces."""
+    now, n, here = contacts.now, contacts.rows[i], i * at.IN_STEP
+    w = own_compliance(contacts.faces, n, runs)
+    normal, tangential = held(now, here + at.NORMAL_NOW, runs), held(now, here + at.TANGENTIAL_NOW, runs)
+    gap, slip = component(contacts.faces, n, DISPLACEMENT, runs), component(contacts.faces, n + 1, DISPLACEMENT, runs)
+    hold(now, here + at.NEW_GAP, runs, gap)
+    hold(now, here + at.NEW_SLIP, runs, slip)
+    hold(now, here + at.FREE_GAP, runs, gap - w.nn * normal + w.nt * tangential)
+    hold(now, here + at.FREE_SLIP, runs, slip - w.tn * normal + w.tt * tangential)
 
 
 @inlined
@@ -92,14 +97,31 @@ def keep_unsolved(contacts: Contacts, state: Carried, sizes: Sizes, unsolved: Nu
             hold(state.carried, base + row, runs, kept)
 
 
+@inlined
+def free_of_contact(i: int, parts: Parts, forces: Tangents, runs: Runs) -> FreeInSpace:
+    """Return the motion of contact `i` in space without its own forces, yielding linearly about its indentation."""
+    contacts, now, here = parts.contacts, parts.contacts.now, i * at.IN_STEP
+    free = FreeInSpace(
+        held(now, here + at.FREE_GAP, runs),
+        held_along(now, here + at.FREE_SLIP, here + at.FREE_SLIP_B, runs),
+        strayed_in_space(parts.state.carried, i, runs),
+        whole_compliance(contacts.faces, contacts.rows[i], runs),
+        held(now, here + at.LET_GO, runs),
+        forces,
+    )
+    give, beyond = held(now, here + at.GIVE, runs), held(now, here + at.BEYOND, runs)
+    yielding: FreeInSpace = about_indentation(free, give, beyond)
+    return yielding
+
+
 @pasted
 def keep_books_in_space(i: int, parts: Parts, n: int, runs: Runs) -> None:
     """Do the bookkeeping of contact `i` in space: along the direction of its friction, then for each tangent."""
     contacts, state, motion = parts.contacts, parts.state, parts.imposed.motion
     now, carried, here, base = contacts.now, state.carried, i * at.IN_STEP, i * at.CARRIED
     normal, status = held(now, here + at.NORMAL_NOW, runs), held(now, here + at.STATUS_NOW, runs)
-    forces = pair_of(now, here + at.TANGENTIAL_NOW, at.IN_STEP, runs)
-    slips = pair_of(now, here + at.NEW_SLIP, at.IN_STEP, runs)
+    forces = held_along(now, here + at.TANGENTIAL_NOW, here + at.TANGENTIAL_NOW_B, runs)
+    slips = held_along(now, here + at.NEW_SLIP, here + at.NEW_SLIP_B, runs)
     carried_on = carried_in_space(carried, i, runs)
     way = direction(forces, carried_on.tangential)
     before = past_along(carried_on, way)
@@ -107,42 +129,29 @@ def keep_books_in_space(i: int, parts: Parts, n: int, runs: Runs) -> None:
     store_in(i, gap, contacts, state, runs)
     stuck = runs.zero
     if not set_valued(law) or anywhere(status + before.status > 0.5):
-        free = about_indentation(
-            FreeInSpace(
-                held(now, here + at.FREE_GAP, runs),
-                pair_of(now, here + at.FREE_SLIP, at.IN_STEP, runs),
-                Tangents(strayed(carried, i, runs), strayed(carried, i + 1, runs)),
-                whole_compliance(contacts.faces, i, runs),
-                held(now, here + at.LET_GO, runs),
-                forces,
-            ),
-            held(now, here + at.GIVE, runs),
-            held(now, here + at.BEYOND, runs),
-        )
+        free = free_of_contact(i, parts, forces, runs)
         touch = Touch(normal, along(forces, way), status, held(now, here + at.JAMMED_NOW, runs))
         closed = share_states(i, touch, free_along(free, way), gap, before, parts, runs)
-        keep_anchor(i, slips.a, law, status, before.status, carried, runs)
-        keep_anchor(i + 1, slips.b, law, status, before.status, carried, runs)
+        both = status, before.status
+        keep_anchor(carried, base + at.MATERIAL, base + at.ANCHOR, law, slips.a, both, runs)
+        keep_anchor(carried, base + at.MATERIAL_B, base + at.ANCHOR_B, law, slips.b, both, runs)
         if motion.shape[0] > 1:
-            driven = driven_work(i, normal, forces.a, motion, n, runs)
-            driven += driven_work(i + 1, runs.zero, forces.b, motion, n, runs)
+            driven = driven_work(i, normal, forces.a, motion, n, runs) + driven_along_b(i, forces.b, motion, n, runs)
             add(state.energies, at.CONTACT_WORK, runs, -driven)
             add(state.energies, at.DRIVE_WORK, runs, driven)
         of_law = law_of(i, contacts, runs)
         past, states, stuck = next_in_space((normal, status), free, of_law, carried_on, parts.timing.step)
         hold(carried, base + at.STUCK_SHARE, runs, stuck)
-        hold(carried, base + at.PAST_RATIO, runs, past.a)
-        hold(carried, base + at.CARRIED + at.PAST_RATIO, runs, past.b)
-        hold(carried, base + at.FRICTION_STATE, runs, states.a)
-        hold(carried, base + at.CARRIED + at.FRICTION_STATE, runs, states.b)
+        hold_along(carried, base + at.PAST_RATIO, base + at.PAST_RATIO_B, runs, past)
+        hold_along(carried, base + at.FRICTION_STATE, base + at.FRICTION_STATE_B, runs, states)
         lost = keep_forces(i, touch, Moved(gap, along(slips, way)), carried, contacts, closed, runs)
         add(state.energies, at.FRICTION_LOSS, runs, lost)
-        keep_tangential(i, forces.a, carried, contacts.sums, runs)
-        keep_tangential(i + 1, forces.b, carried, contacts.sums, runs)
-        hold(carried, base + at.CARRIED + at.STATUS, runs, resting(status))
-        hold(carried, base + at.CARRIED + at.LAST_NORMAL, runs, normal)
-    keep_motion(i, Moved(gap, slips.a), stuck, carried_on.slip.a, carried, runs)
-    keep_motion(i + 1, Moved(gap, slips.b), stuck, carried_on.slip.b, carried, runs)
+        add(contacts.sums, i * at.SUMS + at.TANGENTIALS, runs, forces.a)
+        add(contacts.sums, i * at.SUMS + at.TANGENTIALS_B, runs, forces.b)
+        hold_along(carried, base + at.LAST_TANGENTIAL, base + at.LAST_TANGENTIAL_B, runs, forces)
+    keep_gap(i, gap, carried, runs)
+    keep_slip(carried, base + at.MATERIAL, base + at.LAST_SLIP, base + at.EARLIER_SLIP, slips.a, stuck, runs)
+    keep_slip(carried, base + at.MATERIAL_B, base + at.LAST_SLIP_B, base + at.EARLIER_SLIP_B, slips.b, stuck, runs)
 
 
 @pasted
@@ -158,8 +167,8 @@ def keep_books_of(i: int, parts: Parts, n: int, runs: Runs) -> None:
     free = Free(
         held(now, here + at.FREE_GAP, runs),
         held(now, here + at.FREE_SLIP, runs),
-        strayed(parts.state.carried, i, runs),
-        own_compliance(parts.contacts.faces, i, runs),
+        strayed_in_plane(parts.state.carried, i, runs),
+        own_compliance(parts.contacts.faces, parts.contacts.rows[i], runs),
         held(now, here + at.LET_GO, runs),
     )
     moved = Moved(held(now, here + at.NEW_GAP, runs), held(now, here + at.NEW_SLIP, runs))
@@ -189,17 +198,18 @@ def keep_many(space: bool | None, parts: Parts, n: int, runs: Runs) -> None:
     """Complete step `n` under the forces of all contacts (step 6), and do their bookkeeping."""
     contacts, state, imposed = parts.contacts, parts.state, parts.imposed
     after = n + 2 if imposed.motion.shape[0] > 1 else 0
-    work, lost = complete_many(parts.modes, parts.paths, contacts, parts.sizes, runs)
+    work, lost = complete_many(space, parts.modes, parts.paths, contacts, parts.sizes, runs)
     credit(state.energies, work, lost, runs.zero, runs)
     for i in range(parts.sizes.contacts):
-        in_space = is_second(contacts.codes, i + 1)
-        if space is not None and in_space:
+        if space is not None and has_b(contacts.rows, i):
             keep_books_in_space(i, parts, n, runs)
-        if not (in_space or is_second(contacts.codes, i)):
+            place_b = place_after_along_b(i, parts, after, runs)
+            hold(state.carried, i * at.CARRIED + at.ABSCISSA_B, runs, place_b)
+        else:
             keep_books_of(i, parts, n, runs)
         place, slope = place_after(i, parts, after, runs)
         goes_round = parts.sizes.circles and parts.paths.body_of[i] >= 0
-        if space is not None and goes_round and not is_second(contacts.codes, i):
+        if space is not None and goes_round:
             work = convected(i, place, parts, runs)
             add(state.energies, at.CONVECTION_WORK, runs, work)
         way = keep_place(i, state.carried, place, runs)

@@ -3,7 +3,7 @@
 from .books.bookkeeping import credit, keep_books, keep_place
 from .books.leaving import beyond_ends
 from .books.recording import keep_probes
-from .contact.solves import carried_by, strayed
+from .contact.solves import carried_by, strayed_in_plane
 from .contact.yielding import comes_close, solve_and_keep
 from .lanes.compiled import inlined, pasted
 from .lanes.operations import Array, Number, Runs, anywhere, choose, held, hold
@@ -28,7 +28,7 @@ def solve_single(tried: Tried, contacts: Contacts, carried: Array, timing: Timin
 @inlined
 def free_of(tried: Tried, carried: Array, runs: Runs) -> Free:
     """Return the motion of a single contact without its forces; it is never let go."""
-    return Free(tried.gap, tried.slip, strayed(carried, 0, runs), tried.w, runs.zero)
+    return Free(tried.gap, tried.slip, strayed_in_plane(carried, 0, runs), tried.w, runs.zero)
 
 
 @pasted
@@ -52,7 +52,7 @@ def touch_one(
     tried, done = try_one(parts, after, last, pending, sine, runs)
     if pending:
         credit(state.energies, done.work, done.lost, done.slope * advance, runs)
-        keep_probes(parts, n - 1, runs)
+        keep_probes(None, parts, n - 1, runs)
     # A run that has ended has no contact.
     w = Compliance(tried.w.nn, tried.w.nt, tried.w.tn, choose(ended > 0.0, 1.0, tried.w.tt))
     tried = Tried(tried.place, choose(ended > 0.0, runs.zero, tried.gap), tried.slip, w)

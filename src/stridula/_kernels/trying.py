@@ -5,11 +5,12 @@ from .contacts.compliance import set_compliance, set_compliance_of_coupled
 from .lanes.compiled import inlined, pasted
 from .lanes.operations import TRUTH, Array, Number, Pair, Runs, anywhere, choose, fused, held, hold, read, total
 from .layout import columns as at
-from .layout.contact_values import Compliance, Done, Touch, Tried
+from .layout.contact_values import Compliance, Done, Tangents, Touch, Tried
 from .layout.parts import Contacts, Modes, Parts, Paths, Sizes
-from .layout.rows import CONTACTS, POSITION, SINE, Q
+from .layout.rows import CONTACTS, POSITION, SINE, Q, has_b
 from .modes.blocks import (
     add_push,
+    add_push_along,
     clear_push,
     complete_all,
     pass_fixed,
@@ -31,6 +32,14 @@ def place_of(i: int, constants: Array, motion: Array, n: int, tip: Number, runs:
     place = held(constants, i * at.CONTACT_CONSTANTS + at.START, runs)
     place += read(motion, n, column + at.TIP_MOTION * runs.columns, runs.zero) + tip
     return place, read(motion, n, column + at.TRACK_MOTION * runs.columns, runs.zero)
+
+
+@inlined
+def place_along_b(i: int, motion: Array, n: int, tip: Number, runs: Runs) -> Pair:
+    """Do `place_of` for tangent b, whose abscissas begin at zero."""
+    column = i * at.MOTIONS * runs.columns + runs.first
+    place = read(motion, n, column + at.TIP_MOTION_B * runs.columns, runs.zero) + tip
+    return place, read(motion, n, column + at.TRACK_MOTION_B * runs.columns, runs.zero)
 
 
 @inlined
@@ -126,14 +135,20 @@ def try_many(space: bool | None, parts: Parts, n: int, ended: Number, runs: Runs
     try_coupled(rows, modes.matrices, modes.reach, sizes.coupled, places, runs)
     try_all(rows, sizes.coupled, sizes.blocks, runs)
     for i in range(sizes.contacts):
-        across, along = runs.zero, runs.zero
+        across, along, row = runs.zero, runs.zero, CONTACTS + contacts.rows[i]
         for s in range(paths.first_span[i], paths.first_span[i + 1]):
             if spans[s, at.KIND] == at.CONSTANT:
-                found = two_products(rows, CONTACTS + 2 * i, POSITION, spans[s, at.BEGIN], spans[s, at.END], runs)
-                across, along = across + found[0], along + found[1]
+                rise, way = two_products(rows, row, POSITION, spans[s, at.BEGIN], spans[s, at.END], runs)
+                across, along = across + rise, along + way
         place, track = place_of(i, contacts.constants, imposed.motion, n, along, runs)
         gap = gap_of(i, contacts.constants, imposed.motion, n, runs) + across
         slip = place - track - held(state.carried, i * at.CARRIED + at.MATERIAL, runs)
+        place_b, track_b = runs.zero, runs.zero
+        if space is not None and has_b(contacts.rows, i):
+            along = along_constant(rows, paths, i, row + 2, POSITION, runs)
+            place_b, track_b = place_along_b(i, imposed.motion, n, along, runs)
+            slip_b = place_b - track_b - held(state.carried, i * at.CARRIED + at.MATERIAL_B, runs)
+            hold(now, i * at.IN_STEP + at.FREE_SLIP_B, runs, slip_b)
         if paths.path_of[i] >= 0:
             # Steps 2 and 3.
             set_waves_at(i, paths, contacts.constants, place, SINE, runs)
@@ -141,29 +156,40 @@ def try_many(space: bool | None, parts: Parts, n: int, ended: Number, runs: Runs
                 kind, begin, end = spans[s, at.KIND], spans[s, at.BEGIN], spans[s, at.END]
                 if kind != at.CONSTANT:
                     upright = kind == at.PATH_NORMAL
-                    row = CONTACTS + 2 * i + (0 if upright else 1)
-                    set_path_rows(rows, paths, i, s, row, SINE, runs)
-                    moved = product(rows, row, POSITION, begin, end, runs)
+                    on_path = row if upright else row + 1
+                    set_path_rows(rows, paths, i, s, on_path, SINE, runs)
+                    moved = product(rows, on_path, POSITION, begin, end, runs)
                     gap += moved if upright else runs.zero
                     slip += runs.zero if upright else moved
         elif space is not None and sizes.circles and paths.body_of[i] >= 0:
-            rise, slip = go_round(i, (place, track), parts, n, runs)
+            rise, slips = go_round(i, Tangents(place, place_b), Tangents(track, track_b), parts, n, runs)
             gap += rise
+            slip = slips.a
+            hold(now, i * at.IN_STEP + at.FREE_SLIP_B, runs, slips.b)
         put_free(i, now, place, choose(ended > 0.0, runs.zero, gap), slip, runs)
 
 
+@inlined
+def along_constant(rows: Array, paths: Paths, i: int, row: int, other: int, runs: Runs) -> Number:
+    """Return the product of two rows over the constant spans of contact `i`."""
+    along, spans = runs.zero, paths.spans
+    for s in range(paths.first_span[i], paths.first_span[i + 1]):
+        if spans[s, at.KIND] == at.CONSTANT:
+            along += product(rows, row, other, spans[s, at.BEGIN], spans[s, at.END], runs)
+    return along
+
+
 @pasted
-def soften(modes: Modes, paths: Paths, contacts: Contacts, sizes: Sizes, runs: Runs) -> None:
+def soften(space: bool | None, modes: Modes, paths: Paths, contacts: Contacts, sizes: Sizes, runs: Runs) -> None:
     """Set the compliance of contacts on paths at their new places (step 4)."""
     if sizes.coupled_paths:
-        places = sizes.coupled * sizes.per_block
-        set_compliance_of_coupled(modes, contacts.faces, sizes.blocks, sizes.coupled, places, sizes.contacts, runs)
+        set_compliance_of_coupled(modes, contacts.faces, sizes, runs)
     elif sizes.paths:
-        set_compliance(modes.rows, contacts.faces, paths.spans, paths.first_span, paths, sizes.contacts, runs)
+        set_compliance(space, modes, paths, contacts, sizes, runs)
 
 
 @inlined
-def complete_many(modes: Modes, paths: Paths, contacts: Contacts, sizes: Sizes, runs: Runs) -> Pair:
+def complete_many(space: bool | None, modes: Modes, paths: Paths, contacts: Contacts, sizes: Sizes, runs: Runs) -> Pair:
     """Complete the step of all modes under the contact forces (step 6); return their work and the loss to damping."""
     rows, spans, now = modes.rows, paths.spans, contacts.now
     clear_push(rows, sizes.blocks, runs)
@@ -174,8 +200,13 @@ def complete_many(modes: Modes, paths: Paths, contacts: Contacts, sizes: Sizes, 
                 held(now, here + at.NORMAL_NOW, runs),
                 held(now, here + at.TANGENTIAL_NOW, runs),
             )
+            row = CONTACTS + contacts.rows[i]
             for s in range(paths.first_span[i], paths.first_span[i + 1]):
-                add_push(rows, i, spans[s, at.BEGIN], spans[s, at.END], runs, normal, tangential)
+                add_push(rows, row, spans[s, at.BEGIN], spans[s, at.END], runs, normal, tangential)
+            if space is not None and has_b(contacts.rows, i):
+                tangential = held(now, here + at.TANGENTIAL_NOW_B, runs)
+                for s in range(paths.first_span[i], paths.first_span[i + 1]):
+                    add_push_along(rows, row + 2, spans[s, at.BEGIN], spans[s, at.END], runs, tangential)
     places = sizes.coupled * sizes.per_block
     work, lost = complete_coupled(rows, modes.matrices, modes.reach, sizes.coupled, places, runs)
     more, taken = complete_all(rows, sizes.coupled, sizes.blocks, runs)
@@ -195,7 +226,7 @@ def place_after(i: int, parts: Parts, n: int, runs: Runs) -> Pair:
     for s in range(paths.first_span[i], paths.first_span[i + 1]):
         kind, begin, end = spans[s, at.KIND], spans[s, at.BEGIN], spans[s, at.END]
         if kind == at.CONSTANT:
-            along += product(rows, CONTACTS + 2 * i + 1, Q, begin, end, runs)
+            along += product(rows, CONTACTS + contacts.rows[i] + 1, Q, begin, end, runs)
             continue
         if kind == at.ROUND:
             continue
@@ -206,3 +237,15 @@ def place_after(i: int, parts: Parts, n: int, runs: Runs) -> Pair:
             slope -= held(contacts.now, here + at.TANGENTIAL_NOW, runs) * found
     place, _ = place_of(i, contacts.constants, motion, n, along, runs)
     return place, slope
+
+
+@inlined
+def place_after_along_b(i: int, parts: Parts, n: int, runs: Runs) -> Number:
+    """Return the abscissa of contact `i` along tangent b after the step; no path moves along it."""
+    if parts.paths.body_of[i] < 0:
+        column = (i * at.MOTIONS + at.TRACK_MOTION_B) * runs.columns + runs.first
+        track = read(parts.imposed.motion, n, column, runs.zero)
+        return held(parts.state.carried, i * at.CARRIED + at.MATERIAL_B, runs) + track
+    along = along_constant(parts.modes.rows, parts.paths, i, CONTACTS + parts.contacts.rows[i] + 2, Q, runs)
+    place, _ = place_along_b(i, parts.imposed.motion, n, along, runs)
+    return place

@@ -268,9 +268,8 @@ def _times(flat: Assembly, alone: Array, coupled: Array, values: Array) -> Array
 
 def _from_rest(flat: Assembly, normal: Array, tangential: Array, steps: int) -> tuple[Array, Array]:
     """Return forces with the first impulse of contacts that are closed at the start counted by half, as in the run."""
-    firsts = [one for one in flat.contacts if not one.is_second]
-    gaps = np.array([one.rows_at(one.at)[0] @ flat.position + one.gap for one in firsts])
-    closed = (gaps < 0.0) | (np.array([one.yields is None for one in firsts]) & (gaps == 0.0))
+    gaps = np.array([one.rows_at(one.at)[0] @ flat.position + one.gap for one in flat.contacts])
+    closed = (gaps < 0.0) | (np.array([one.yields is None for one in flat.contacts]) & (gaps == 0.0))
     share = np.where(closed, BEFORE / steps, 0.0)
     normal, tangential = normal.copy(), tangential.copy()
     normal[:, 0] -= share * normal[:, 0]
@@ -282,13 +281,10 @@ def _of_contacts(flat: Assembly, normal: Array, tangential: Array) -> tuple[Arra
     """Return rows on the modes and the forces along them [N], shape (rows, modes) and (rows, samples)."""
     rows, forces = [], []
     along = tangential if tangential.ndim == 3 else tangential[:, None]
-    for one, number in zip(flat.contacts, flat.contact_numbers, strict=True):
-        if not one.is_second:
-            rows.append(one.fixed[0])
-            forces.append(normal[number])
+    for one, pressed, rubbed in zip(flat.contacts, normal, along, strict=True):
         # The tangential force is that on the track, the rows are those of the tip.
-        rows.append(-one.fixed[1])
-        forces.append(along[number, int(one.is_second)])
+        rows += [one.fixed[0], *-one.fixed[1:]]
+        forces += [pressed, *rubbed[: len(one.fixed) - 1]]
     return np.array(rows), np.array(forces)
 
 
@@ -298,9 +294,8 @@ def _gone_round(flat: Assembly, rows: Array, signals: Array, places: Array) -> t
     `places` are their abscissas in the middle of each interval [m], shape (contacts, samples).
     """
     rows, own = rows.copy(), np.zeros((rows.shape[1], signals.shape[1]))
-    owners = [one for one in flat.contacts for _ in range(1 if one.is_second else 2)]
-    numbers = np.repeat(flat.contact_numbers, [1 if one.is_second else 2 for one in flat.contacts])
-    for row, signal, one, number in zip(rows, signals, owners, numbers.tolist(), strict=True):
+    owners = [(one, number) for number, one in enumerate(flat.contacts) for _ in one.fixed]
+    for row, signal, (one, number) in zip(rows, signals, owners, strict=True):
         if one.circle is None:
             continue
         first, second = one.circle.pairs.T

@@ -17,6 +17,9 @@ from ..arrays import Array
 from ..lowering.packing import PLAIN, aligned, columns, compliance_in_blocks, room_to_solve, side_by_side
 from .contact_solve import GaussSeidel
 
+FREE_SLIPS = [at.FREE_SLIP, at.FREE_SLIP_B]
+FORCES = [at.NORMAL_NOW, at.TANGENTIAL_NOW, at.TANGENTIAL_NOW_B]
+
 
 def forces_of(
     gaps: Array,
@@ -26,15 +29,18 @@ def forces_of(
     carried: Array,
     step: float,
     solve: GaussSeidel,
+    first_rows: Array | None = None,
 ) -> Array:
-    """Return the normal and the tangential force of each contact [N], shape (contacts, 2).
+    """Return the normal and the tangential forces of each contact [N], shape (contacts, 1 + tangents).
 
     Parameters
     ----------
-    gaps, slips : ndarray, shape (contacts,)
-        Gap at the end of a step and slip in it, without contact forces [m].
-    compliance : ndarray, shape (2 contacts, 2 contacts)
-        Displacements along normal and tangent of each contact for unit forces on each [m/N].
+    gaps : ndarray, shape (contacts,)
+        Gap at the end of a step, without contact forces [m].
+    slips : ndarray, shape (contacts, tangents)
+        Slips in it [m]; those of tangents that a contact does not have are not used.
+    compliance : ndarray, shape (rows, rows)
+        Displacements along normal and tangents of each contact for unit forces on each [m/N].
     laws : tuple of ndarray
         Codes of the friction laws, shape (contacts,), and their parameters, a row for each contact.
     carried : ndarray, shape (contacts, scalars)
@@ -43,19 +49,25 @@ def forces_of(
         Time step [s].
     solve : GaussSeidel
         Settings of the simultaneous solution.
+    first_rows : ndarray of int, shape (contacts + 1,), optional
+        First row of each contact, and the end of the last; by default all have the same tangents.
     """
-    count = len(gaps)
-    if count == 1:
-        return _force_of_one(float(gaps[0]), float(slips[0]), compliance, laws, carried[0], step)
+    count, tangents = slips.shape
+    if first_rows is None:
+        first_rows = (1 + tangents) * np.arange(count + 1)
+    space, rows = bool((np.diff(first_rows) > 2).any()), int(first_rows[-1])
+    if count == 1 and not space:
+        alone = _force_of_one(float(gaps[0]), float(slips[0, 0]), compliance, laws, carried[0], step)
+        return np.pad(alone, ((0, 0), (0, tangents - 1)))
     per_block = 1 if PLAIN else LANES
-    space = bool((laws[0] == at.SECOND_TANGENT).any())
-    sizes = Sizes(0, 0, per_block, count, -(-2 * count // per_block), 0, False, False, space)
+    sizes = Sizes(0, 0, per_block, count, -(-rows // per_block), rows, 0, False, False, space)
     now = np.zeros((count, at.IN_STEP))
-    now[:, at.FREE_GAP], now[:, at.FREE_SLIP] = gaps, slips
+    now[:, at.FREE_GAP], now[:, FREE_SLIPS[:tangents]] = gaps, slips
     constants = np.zeros((count, at.CONTACT_CONSTANTS))
     constants[:, at.AT_REST] = laws[1][:, STATIC]
     contacts = Contacts(
         *laws,
+        first_rows,
         columns(side_by_side([constants.ravel()])),
         columns(aligned(3, 1)),
         compliance_in_blocks([compliance], sizes, per_block),
@@ -67,7 +79,7 @@ def forces_of(
     carried = columns(side_by_side([carried.ravel()]))
     solve_closed(space or None, contacts, carried, touching, sizes, timing, Runs(0, 1, 0.0))
     now = contacts.now.reshape(count, at.IN_STEP)
-    return np.asarray(now[:, [at.NORMAL_NOW, at.TANGENTIAL_NOW]])
+    return np.asarray(now[:, FORCES[: 1 + tangents]])
 
 
 def _force_of_one(

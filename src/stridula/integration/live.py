@@ -16,7 +16,7 @@ from ..records import Probe
 from ..records.state import State
 from ..records.variables import ALONG_TANGENTS
 from ..system import System
-from .run import CONTACT_COLUMN, ENERGY_COLUMN, along_both
+from .run import ALONG_BOTH, CONTACT_COLUMN, ENERGY_COLUMN
 from .stops import ENDED
 from .under_way import Marched, UnderWay, begun, changed
 
@@ -151,7 +151,7 @@ class LiveMarch:
     @property
     def passed(self) -> Array:
         """Distance by which the track of each contact has been moved along itself so far, shape (contacts,) [m]."""
-        return self.now.imposed[self.now.arrays.firsts, at.TRACK_MOTION]
+        return self.now.imposed[:, at.TRACK_MOTION]
 
     @property
     def moment(self) -> Moment:
@@ -195,16 +195,14 @@ class LiveMarch:
         (chunk,) = now.march.advance([imposed], samples)
         done, ended = now.belief.of(chunk)
         time = (now.sample + np.arange(1, done + 1)) * self.interval
-        pairs, energy = chunk.contacts[:done].transpose(1, 2, 0), chunk.energies[:done].T
-        firsts = now.arrays.firsts
-        record = pairs[firsts]
+        record, energy = chunk.contacts[:done].transpose(1, 2, 0), chunk.energies[:done].T
         gaps = record[:, at.CONTACT_GAP, -1].copy() if done else now.gaps
         self.now = replace(now, sample=now.sample + done, gaps=gaps)
         contacts = {name: record[:, column].copy() for name, column in CONTACT_COLUMN.items()}
         energies = {name: energy[column].copy() for name, column in ENERGY_COLUMN.items()}
         shares = record[:, at.SEPARATED : at.SLIDING + 1].transpose(0, 2, 1).copy()
-        doubled = () if firsts.all() else ALONG_TANGENTS
-        tangents = {name: along_both(pairs[:, CONTACT_COLUMN[name]], firsts) for name in doubled}
+        doubled = ALONG_TANGENTS if now.marched.system.has_two_tangents else ()
+        tangents = {name: np.stack([record[:, one] for one in ALONG_BOTH[name]], axis=-1) for name in doubled}
         probes = now.probed.next(chunk.raw[: done * ratio], done)
         return LiveChunk(time, contacts, shares, energies, probes, tangents), ENDED[ended]
 

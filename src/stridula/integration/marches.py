@@ -206,6 +206,7 @@ class March:
         return Contacts(
             contacts[0].codes,
             np.stack([one.laws for one in contacts], axis=1).reshape(count * runs, -1),
+            contacts[0].first_rows,
             columns(side_by_side([one.constants.reshape(-1) for one in contacts])),
             columns(side_by_side([one.compliance[[0, 0, 1], [0, 1, 1]] for one in contacts])),
             compliance_in_blocks([one.compliance for one in contacts], sizes, width),
@@ -216,7 +217,7 @@ class March:
 
     def _probes(self, probes: Sequence[ProbeBlocks]) -> Probes:
         spans = np.zeros((self.probe_count, 2), dtype=np.int64)
-        first = CONTACTS + 2 * self.contact_count + 2 * self.layout.sizes.loads
+        first = CONTACTS + self.layout.sizes.rows + 2 * self.layout.sizes.loads
         for i, span in enumerate(spans):
             seen = np.flatnonzero(self.modes.rows[:, first + i].any(axis=1))
             span[:] = (seen[0], seen[-1] + 1) if seen.size else (0, 0)
@@ -236,9 +237,9 @@ class March:
 
     @property
     def is_single(self) -> bool:
-        """Whether there is a single contact, without coupled modes and turning bodies."""
+        """Whether there is a single contact in the plane, without coupled modes and turning bodies."""
         sizes = self.layout.sizes
-        return sizes.contacts == 1 and not sizes.coupled and not len(self.layout.turning)
+        return sizes.contacts == 1 and not sizes.space and not sizes.coupled and not len(self.layout.turning)
 
     @property
     def kind(self) -> tuple[bool | None, bool | None, bool | None]:

@@ -106,7 +106,7 @@ class Preparation:
             points = sum(map(bool, arrays.system.surface_names))
             is_kept = self.settings.surface_rate is None
             kept = PointRecord(timing.samples, points, timing.ratio) if is_kept else None
-            surfaces = SurfaceRecord(arrays.system, arrays.flat.firsts, every, kept)
+            surfaces = SurfaceRecord(arrays.system, every, kept)
         return Run(
             arrays.system,
             arrays.flat,

@@ -147,7 +147,7 @@ def moved_on(
     -------
     arrays : Assembly
         The system.
-    offset : ndarray, shape (contacts, 3)
+    offset : ndarray, shape (contacts, motions)
         Displacement of its contacts in addition to its description [m].
     """
     described = arrays.motion
@@ -167,7 +167,7 @@ def moved_on(
 
 
 def motion_about(motion: Signal, last_step: int, step: float) -> Array:
-    """Return the motions of the contacts after some steps and one step earlier [m], shape (2, contacts, 3)."""
+    """Return the motions of the contacts after some steps and one step earlier [m], shape (2, contacts, motions)."""
     return motion(np.array([last_step - 1, last_step]) * step, step)
 
 

@@ -57,8 +57,14 @@ ENERGY_COLUMN = {
     "contact_sweeps": at.ITERATIONS,
     "unsolved_steps": at.UNSOLVED,
 }
-# All columns of the record of contacts.
-ALL_COLUMNS = tuple(range(at.COLUMNS))
+# Columns along both tangents of contacts in space.
+ALONG_BOTH = {
+    "tangential_force": (at.TANGENTIAL_FORCE, at.TANGENTIAL_FORCE_B),
+    "contact_position": (at.CONTACT_POSITION, at.CONTACT_POSITION_B),
+    "slip_velocity": (at.SLIP_VELOCITY, at.SLIP_VELOCITY_B),
+    "friction_state": (at.LAW_STATE, at.LAW_STATE_B),
+}
+ALONG_B = {b for _, b in ALONG_BOTH.values()}
 
 
 class Run:
@@ -96,14 +102,15 @@ class Run:
         self.belief = Belief(system, arrays, self.blocks, self.state.energies, self.initial_energy, met)
         self.impositions = Impositions(self.arrays, self.blocks, timing.step)
         self.energy_record = np.empty((at.ENERGIES, timing.samples))
-        # Compact record of the surfaces, and the rows of contacts that remain.
+        # Compact record of the surfaces.
         self.surfaces = surfaces
-        self.firsts = arrays.firsts if surfaces is None else surfaces.firsts
-        self.contact_record = np.empty((at.COLUMNS, len(self.firsts), timing.samples))
+        count = len(arrays.contacts) if surfaces is None else len(surfaces.shown)
+        self.contact_record = np.empty((at.COLUMNS, count, timing.samples))
         of_bodies = np.array([one.is_of_body for one in arrays.probes], dtype=bool)
         self.probed = ProbeRecords(of_bodies, timing, before)
         self.wanted: Collection[str] = RECORDED
-        self.columns: tuple[int, ...] = ALL_COLUMNS
+        unused = () if system.has_two_tangents else ALONG_B
+        self.columns: tuple[int, ...] = tuple(column for column in range(at.COLUMNS) if column not in unused)
         self.done = 0
         self.ended = at.FINISHED
         self.compile_time = self.wall_time = 0.0
@@ -112,6 +119,8 @@ class Run:
         """Restrict the plain record to some variables."""
         shares = range(at.SEPARATED, at.SLIDING + 1) if STATUS_SHARE.name in wanted else ()
         columns = [column for name, column in CONTACT_COLUMN.items() if name in wanted]
+        if self.system.has_two_tangents:
+            columns += [b for name, (_, b) in ALONG_BOTH.items() if name in wanted]
         self.wanted, self.columns = wanted, (*columns, *shares)
 
     @property
@@ -151,7 +160,7 @@ class Run:
 
     def why_diverged(self) -> str:
         """Return the contacts when the run diverged, and where they matter their rank and free motions, in words."""
-        words = contact_words(self.system.contact_names, self.state.carried[self.arrays.firsts])
+        words = contact_words(self.system.contact_names, self.state.carried)
         if self.ended != at.CONTACT_UNSOLVED:
             return words
         free = free_words(self.system)
@@ -213,13 +222,11 @@ class Run:
     def _over_time(self) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Return the columns of the contacts, their status shares and the energies, up to the end."""
         done = self.done
-        pairs, energies = self.contact_record[:, :, :done], self.energy_record[:, :done]
-        firsts = self.firsts
-        record = pairs if firsts.all() else pairs[:, firsts]
+        record, energies = self.contact_record[:, :, :done], self.energy_record[:, :done]
         columns = {name: record[column] for name, column in CONTACT_COLUMN.items()}
-        if not firsts.all():
+        if self.system.has_two_tangents:
             doubled = (*ALONG_TANGENTS, FRICTION_STATE.name) if self.system.has_state_vectors else ALONG_TANGENTS
-            columns |= {name: along_both(pairs[CONTACT_COLUMN[name]], firsts) for name in doubled}
+            columns |= {name: np.stack([record[one] for one in ALONG_BOTH[name]], axis=-1) for name in doubled}
         sums = {name: energies[column] for name, column in ENERGY_COLUMN.items()}
         if "impact_loss" in self.wanted:
             sums["impact_loss"] = sums["convection_work"] - sums["friction_loss"] - sums["contact_work"]
@@ -277,11 +284,3 @@ class Run:
         if self.settings.solve != GaussSeidel():
             simulation["contact_solve"] = asdict(self.settings.solve)
         return scenario_toml(self.system, self.probes, simulation | self.settings.others)
-
-
-def along_both(pairs: Array, firsts: Array) -> Array:
-    """Return values along both tangents, (contacts, samples, 2), from pairs of rows; 0 for a missing tangent."""
-    found = np.zeros((int(firsts.sum()), pairs.shape[1], 2))
-    found[..., 0] = pairs[firsts]
-    found[np.cumsum(firsts)[~firsts] - 1, :, 1] = pairs[~firsts]
-    return found

@@ -29,6 +29,12 @@ ROUND_OFF = 512.0 * np.finfo(float).eps
 FLAT = 1e6
 # Relative stiffness of coupled modes that is due to rounding.
 STIFFLESS = 1e-13
+# Columns along both tangents.
+MATERIAL, ANCHOR, ABSCISSA = [at.MATERIAL, at.MATERIAL_B], [at.ANCHOR, at.ANCHOR_B], [at.ABSCISSA, at.ABSCISSA_B]
+LAST_SLIP, EARLIER_SLIP = [at.LAST_SLIP, at.LAST_SLIP_B], [at.EARLIER_SLIP, at.EARLIER_SLIP_B]
+LAST_TANGENTIAL, PAST_RATIO = [at.LAST_TANGENTIAL, at.LAST_TANGENTIAL_B], [at.PAST_RATIO, at.PAST_RATIO_B]
+FRICTION_STATE = [at.FRICTION_STATE, at.FRICTION_STATE_B]
+TIP, TRACK = [at.TIP_MOTION, at.TIP_MOTION_B], [at.TRACK_MOTION, at.TRACK_MOTION_B]
 
 
 def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks, solve: GaussSeidel) -> State:
@@ -50,12 +56,13 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
     closed = np.flatnonzero(start.is_closed)
     if closed.size:
         forces = start.forces(closed, first, carried, solve)
-        first = start.increment(force + (forces * [1.0, -1.0]).ravel() @ start.pushes(closed))
+        first = start.increment(force + start.along_rows(closed, forces) @ start.pushes(closed))
         first += start.increment_of_rates(closed, forces)
         carried = start.carried(first)
-        carried[closed[:, None], [at.LAST_NORMAL, at.LAST_TANGENTIAL]] = forces
-        pressed = closed[forces[:, 0] > 0.0]
-        carried[pressed, at.PAST_RATIO] = 0.5 * forces[forces[:, 0] > 0.0, 1] / forces[forces[:, 0] > 0.0, 0]
+        carried[closed[:, None], [at.LAST_NORMAL, *LAST_TANGENTIAL[: start.tangents]]] = forces
+        presses = forces[:, 0] > 0.0
+        pressed = closed[presses]
+        carried[pressed[:, None], PAST_RATIO[: start.tangents]] = 0.5 * forces[presses, 1:] / forces[presses, :1]
         carried[pressed, at.CLOSED_SHARE] = 1.0
         carried[pressed, at.STATUS] = np.where(start.slip_speeds[pressed] == 0.0, STICKING, SLIDING)
         carried[pressed, at.STUCK_SHARE] = carried[pressed, at.STATUS] == STICKING
@@ -84,18 +91,17 @@ class _Start:
         self.modes, self.contacts = blocks.modes, blocks.contacts
         self.before, self.after = np.diff(arrays.motion(times, step), axis=0)
         self.factors = arrays.signals.factors(times[1:2], step)[:, 0]
-        self.fixed = np.array([one.fixed for one in arrays.contacts])
-        self.travels = self.fixed[:, 1]
+        # Number of tangents of each contact, and the most of any: rows of the tangents that others lack are zero.
+        self.counts = np.array([len(one.fixed) - 1 for one in arrays.contacts])
+        self.tangents = int(self.counts.max())
+        self.travels = self._padded([one.fixed for one in arrays.contacts])[:, 1:]
         if any(one.circle is not None for one in arrays.contacts):
-            self.travels = np.array([one.travel for one in arrays.contacts])
-        moved = arrays.motion(times[1:2], step)[0, :, at.TIP_MOTION] + self.travels @ arrays.position
+            self.travels = self._padded([np.vstack([one.fixed[:1], one.travel]) for one in arrays.contacts])[:, 1:]
+        moved = arrays.motion(times[1:2], step)[0, :, at.TIP_MOTION] + self.travels[:, 0] @ arrays.position
         places = [one.at + shift for one, shift in zip(arrays.contacts, moved.tolist(), strict=True)]
-        self._go_together(places)
-        self.rows = np.array([pair[0].rows_at(pair[1]) for pair in zip(arrays.contacts, places, strict=True)])
+        self.rows = self._rows_at(places)
         terms = _terms(arrays, self.factors @ arrays.loads)
-        gaps = np.array([_gap(*pair, arrays, terms) for pair in zip(arrays.contacts, self.rows, strict=True)])
-        self.first = np.flatnonzero(arrays.firsts)[arrays.contact_numbers]
-        self.gaps = gaps[self.first]
+        self.gaps = np.array([_gap(*one, arrays, terms) for one in zip(arrays.contacts, self.rows, strict=True)])
         self.velocity = arrays.velocity.copy()
         for one in arrays.turning:
             # Increments are relative to the pairs as they are carried round.
@@ -104,11 +110,25 @@ class _Start:
             self.velocity[first] += rate * arrays.position[second]
             self.velocity[second] -= rate * arrays.position[first]
 
-    def _go_together(self, places: list[float]) -> None:
-        """Set the place of both tangents of contacts on circles to the abscissa along the first."""
-        for i, one in enumerate(self.arrays.contacts):
-            if one.circle is not None and one.is_second:
-                places[i] = places[i - 1]
+    def _padded(self, rows: list[Array]) -> Array:
+        """Return rows of all contacts as one array, (contacts, 1 + tangents, modes)."""
+        found = np.zeros((len(rows), 1 + self.tangents, self.arrays.mode_count))
+        for own, given in zip(found, rows, strict=True):
+            own[: len(given)] = given
+        return found
+
+    def _rows_at(self, places: list[float]) -> Array:
+        """Return the rows of all contacts with the tips at abscissas [m], (contacts, 1 + tangents, modes)."""
+        return self._padded([one.rows_at(place) for one, place in zip(self.arrays.contacts, places, strict=True)])
+
+    def _slips(self, values: Array) -> Array:
+        """Return the displacements along the tangents for modal displacements, (contacts, tangents)."""
+        return np.stack([self.rows[:, 1 + k] @ values for k in range(self.tangents)], axis=1)
+
+    def along_rows(self, closed: Array, forces: Array) -> Array:
+        """Return the forces of closed contacts, (closed, 1 + tangents), along the rows of `pushes`."""
+        signed = forces * [1.0, *[-1.0] * self.tangents]
+        return signed[np.arange(1 + self.tangents) <= self.counts[closed, None]]
 
     @property
     def is_closed(self) -> Array:
@@ -122,102 +142,103 @@ class _Start:
 
     @cached_property
     def speeds(self) -> Array:
-        """Slip velocity of each contact at the start [m/s], exactly zero if it is round-off."""
-        imposed = (self.before + self.after)[:, :2] * [0.5, -0.5] / self.step
-        terms = self.rows[:, 1] * self.arrays.velocity
-        scale = np.abs(terms).sum(axis=1) + np.abs(imposed).sum(axis=1)
-        speeds = terms.sum(axis=1) + imposed.sum(axis=1)
+        """Slip velocities of each contact at the start [m/s], exactly zero if round-off, (contacts, tangents)."""
+        moved = (self.before + self.after) * 0.5 / self.step
+        tip, track = moved[:, TIP[: self.tangents]], moved[:, TRACK[: self.tangents]]
+        terms = self.rows[:, 1:] * self.arrays.velocity
+        scale = np.abs(terms).sum(axis=2) + (np.abs(tip) + np.abs(track))
+        speeds = terms.sum(axis=2) + (tip - track)
         return np.where(np.abs(speeds) > ROUND_OFF * scale, speeds, 0.0)
 
     @cached_property
     def slip_speeds(self) -> Array:
-        """Slip speed of each contact at the start [m/s], of both tangents in space."""
-        speeds = np.abs(self.speeds)
-        second = np.flatnonzero(~self.arrays.firsts)
-        speeds[second - 1] = np.hypot(speeds[second - 1], speeds[second])
-        return speeds[self.first]
+        """Slip speed of each contact at the start [m/s]."""
+        return np.asarray(np.hypot.reduce(self.speeds, axis=1, initial=0.0))
 
     def _known_ratios(self, carried: Array) -> Array:
-        """Return the ratio of tangential to normal force of contacts whose motion determines it, NaN for others."""
-        ratios, laws = np.full(len(self.speeds), np.nan), self.contacts.laws
-        for i, speed in enumerate(self.speeds):
-            number, whole = int(self.first[i]), float(self.slip_speeds[i])
-            law = Law(int(self.contacts.codes[number]), laws, number, laws[number, STATIC])
-            share = speed / whole if whole else 0.0
-            if self.arrays.contacts[number].contact.has_state_vector:
-                pair = slice(number, number + 2)
-                states, velocity = Tangents(*carried[pair, at.FRICTION_STATE]), Tangents(*self.speeds[pair])
+        """Return the ratios of tangential to normal force of contacts whose motion determines them, NaN for others."""
+        ratios, laws = np.full(self.speeds.shape, np.nan), self.contacts.laws
+        for i, speeds in enumerate(self.speeds):
+            whole = float(self.slip_speeds[i])
+            law = Law(int(self.contacts.codes[i]), laws, i, laws[i, STATIC])
+            if self.arrays.contacts[i].contact.has_state_vector:
+                states, velocity = Tangents(*carried[i, FRICTION_STATE]), Tangents(*speeds)
                 after = state_after(law, states, velocity, self.step)
                 middle = Tangents(*0.5 * (np.array(states) + np.array(after)))
-                ratios[i] = ratio_of_state(law, middle, velocity)[i - number]
+                ratios[i] = ratio_of_state(law, middle, velocity)
             elif not set_valued(law.code):
-                # Signed by the sense of slip, as bristles may be bent either way.
-                sense = -1.0 if share == -1.0 else 1.0
-                state = carried[number, at.FRICTION_STATE]
-                middle = 0.5 * (state + next_state(law, state, sense * whole, self.step))
-                found = state_ratio(law, middle, sense * whole)
-                ratios[i] = found * (sense * share if whole else float(number == i))
+                for k, share in enumerate(speeds / whole if whole else np.zeros(self.tangents)):
+                    # Signed by the sense of slip, as bristles may be bent either way.
+                    sense = -1.0 if share == -1.0 else 1.0
+                    state = carried[i, at.FRICTION_STATE]
+                    later = 0.5 * (state + next_state(law, state, sense * whole, self.step))
+                    found = state_ratio(law, later, sense * whole)
+                    ratios[i, k] = found * (sense * share if whole else float(k == 0))
             elif whole:
-                ratios[i] = share * sliding_ratio(law, whole)
+                ratios[i] = speeds / whole * sliding_ratio(law, whole)
         return ratios
 
     def carried(self, first: Array) -> Array:
         """Return the scalars of each contact after a first increment."""
         carried = np.zeros((len(self.arrays.contacts), at.CARRIED))
-        tip, track = self.before[:, 0], self.before[:, 1]
+        some, position = slice(self.tangents), self.arrays.position
         for i, one in enumerate(self.arrays.contacts):
-            carried[i, at.MATERIAL] = one.at + self.rows[i, 1] @ self.arrays.position
-            carried[i, at.ABSCISSA] = one.at + self.travels[i] @ self.arrays.position
+            for k in range(self.tangents):
+                start = one.at if k == 0 else 0.0
+                carried[i, MATERIAL[k]] = start + self.rows[i, 1 + k] @ position
+                carried[i, ABSCISSA[k]] = start + self.travels[i, k] @ position
             carried[i, at.STATUS] = STICKING if self.is_closed[i] and self.slip_speeds[i] == 0.0 else SEPARATED
-            if one.contact.has_state_vector or not one.is_second:
-                carried[i, at.FRICTION_STATE] = self.arrays.friction_state[i]
-        carried[:, at.ANCHOR], carried[:, at.LAST_GAP] = carried[:, at.MATERIAL], self.gaps
-        carried[:, at.EARLIER_GAP] = self.gaps - self.rows[self.first, 0] @ first - self.before[self.first, 2]
+            states = self.arrays.friction_state[i]
+            carried[i, FRICTION_STATE] = states if one.contact.has_state_vector else (states[0], 0.0)
+        carried[:, ANCHOR], carried[:, at.LAST_GAP] = carried[:, MATERIAL], self.gaps
+        carried[:, at.EARLIER_GAP] = self.gaps - self.rows[:, 0] @ first - self.before[:, at.GAP_MOTION]
         # Two steps earlier, with the same acceleration.
-        speeds = self.gap_speeds[self.first]
+        speeds = self.gap_speeds
         carried[:, at.EARLIEST_GAP] = 4.0 * carried[:, at.EARLIER_GAP] - 3.0 * self.gaps + 2.0 * self.step * speeds
-        carried[:, at.ABSCISSA_BEFORE] = carried[:, at.ABSCISSA] - self.travels @ first - tip
-        carried[:, at.LAST_SLIP] = self.rows[:, 1] @ first + tip - track
+        advance = self.travels[:, 0] @ first
+        carried[:, at.ABSCISSA_BEFORE] = carried[:, at.ABSCISSA] - advance - self.before[:, at.TIP_MOTION]
+        slips = self._slips(first) + self.before[:, TIP[some]] - self.before[:, TRACK[some]]
         # A contact at rest has not slipped, for what its forces will turn out to be.
-        carried[carried[:, at.STATUS] == STICKING, at.LAST_SLIP] = 0.0
+        slips[carried[:, at.STATUS] == STICKING] = 0.0
         # One step earlier, with the same acceleration.
-        carried[:, at.EARLIER_SLIP] = 3.0 * carried[:, at.LAST_SLIP] - 2.0 * self.step * self.speeds
+        carried[:, LAST_SLIP[some]], carried[:, EARLIER_SLIP[some]] = slips, 3.0 * slips - 2.0 * self.step * self.speeds
         return carried
 
     def pushes(self, closed: Array) -> Array:
-        """Return the rows of closed contacts, normal and tangent alternately."""
-        return self.rows[closed].reshape(-1, self.arrays.mode_count)
+        """Return the rows of closed contacts, those of the normal and the tangents of one after the other."""
+        return np.concatenate([self.rows[i, : 1 + self.counts[i]] for i in closed])
 
     def forces(self, closed: Array, first: Array, carried: Array, solve: GaussSeidel) -> Array:
-        """Return the normal and the tangential force of closed contacts, shape (closed, 2)."""
+        """Return the normal and the tangential forces of closed contacts, shape (closed, 1 + tangents)."""
         around, beyond = self._turned(self.arrays.position)
         free = self.modes.free(self.arrays.position + around, first + self._turned(first)[0])
         gap, slip = self._at_first_step(free + self.factors @ self.modes.loads)
-        gap, slip = gap + self.rows[:, 0] @ around, slip + self.rows[:, 1] @ beyond
+        gap, slip = gap + self.rows[:, 0] @ around, slip + self._slips(beyond)
         compliance = self._compliance(self.pushes(closed))
-        for k, i in enumerate(closed):
+        first_rows = np.cumsum([0, *(1 + self.counts[closed])])
+        for n, i in zip(first_rows, closed, strict=False):
             if self.arrays.contacts[i].yields is not None:
                 # Its force is known; a give that large makes it the result of the solution.
-                give = FLAT * compliance[2 * k, 2 * k]
-                compliance[2 * k, 2 * k] += give
-                gap[i] = -(compliance[2 * k, 2 * k]) * self.pressing[i]
+                give = FLAT * compliance[n, n]
+                compliance[n, n] += give
+                gap[i] = -(compliance[n, n]) * self.pressing[i]
         codes, laws = self.contacts.codes[closed], self.contacts.laws[closed]
         ratios = self._known_ratios(carried)[closed]
-        for i in np.flatnonzero(np.isfinite(ratios)):
+        for i in np.flatnonzero(np.isfinite(ratios[:, 0])):
             # With a known ratio, the contact is equivalent to one without friction and with an inclined force.
-            if codes[i] == at.SECOND_TANGENT:
-                continue
-            inclined = compliance[:, 2 * i] - ratios[i] * compliance[:, 2 * i + 1]
-            if i + 1 < len(codes) and codes[i + 1] == at.SECOND_TANGENT:
-                inclined = inclined - ratios[i + 1] * compliance[:, 2 * i + 3]
-            if inclined[2 * i] > 0.0:
-                compliance[:, 2 * i], codes[i], laws[i, STATIC] = inclined, at.COULOMB, 0.0
+            n, end = first_rows[i : i + 2]
+            inclined = compliance[:, n]
+            for ratio, row in zip(ratios[i], range(n + 1, end), strict=False):
+                inclined = inclined - ratio * compliance[:, row]
+            if inclined[n] > 0.0:
+                compliance[:, n], codes[i], laws[i, STATIC] = inclined, at.COULOMB, 0.0
             else:
                 ratios[i] = np.nan
-        forces = forces_of(gap[closed], slip[closed], compliance, (codes, laws), carried[closed], self.step, solve)
+        given = gap[closed], slip[closed], compliance, (codes, laws), carried[closed]
+        forces = forces_of(*given, self.step, solve, first_rows)
         soft = np.array([self.arrays.contacts[i].yields is not None for i in closed])
         forces[:, 0] = np.where(soft, self.pressing[closed], forces[:, 0])
-        forces[:, 1] = np.where(np.isfinite(ratios), ratios * forces[:, 0], forces[:, 1])
+        forces[:, 1:] = np.where(np.isfinite(ratios), ratios * forces[:, :1], forces[:, 1:])
         return forces
 
     def increment_of_rates(self, closed: Array, forces: Array) -> Array:
@@ -226,16 +247,16 @@ class _Start:
         Under a force with the rate f' the position a step earlier is lower by ``h³ f' / 6 m``. The tangential force of
         a contact changes with its normal force, in the ratio of both.
         """
-        ratios = forces[:, 1] / np.where(forces[:, 0] > 0.0, forces[:, 0], 1.0)
-        rates = self.pressing_rates[closed]
-        rates = np.stack([rates, -ratios * rates], axis=1)
-        moved = self.modes.mobility(rates.ravel() @ self.pushes(closed)) * self.step / 6.0
+        ratios = forces[:, 1:] / np.where(forces[:, :1] > 0.0, forces[:, :1], 1.0)
+        rates = self.pressing_rates[closed, None]
+        rates = self.along_rows(closed, np.concatenate([rates, ratios * rates], axis=1))
+        moved = self.modes.mobility(rates @ self.pushes(closed)) * self.step / 6.0
         return np.where(self.arrays.massless, 0.0, moved)
 
     @cached_property
     def gap_speeds(self) -> Array:
         """Velocity of the gap of each contact at the start [m/s]."""
-        imposed = (self.before + self.after)[:, 2] * 0.5 / self.step
+        imposed = (self.before + self.after)[:, at.GAP_MOTION] * 0.5 / self.step
         return np.asarray(self.rows[:, 0] @ self.arrays.velocity + imposed)
 
     @cached_property
@@ -245,8 +266,7 @@ class _Start:
         for i, one in enumerate(self.arrays.contacts):
             if one.yields is not None:
                 forces[i] = one.force_at(-float(self.gaps[i]), -float(self.gap_speeds[i]))
-        # Both pairs of rows of a contact in space have its force.
-        return forces[self.first]
+        return forces
 
     @cached_property
     def pressing_rates(self) -> Array:
@@ -255,7 +275,7 @@ class _Start:
         for i, one in enumerate(self.arrays.contacts):
             if one.yields is not None and self.pressing[i] > 0.0:
                 rates[i] = -one.stiffness_at(-float(self.gaps[i])) * self.gap_speeds[i]
-        return rates[self.first]
+        return rates
 
     def _turned(self, modal: Array) -> tuple[Array, Array]:
         """Return the change of modal values by turning in the first step, and the same relative to the material."""
@@ -268,20 +288,23 @@ class _Start:
 
     def _at_first_step(self, increments: Array) -> tuple[Array, Array]:
         """Return gaps and slips after the first step without contact force, at the new places of the tips."""
-        places = [
-            one.at + travel @ (self.arrays.position + increments) + moved
-            for one, travel, moved in zip(self.arrays.contacts, self.travels, self.after[:, 0], strict=True)
-        ]
-        self._go_together(places)
-        there = np.array([one.rows_at(place) for one, place in zip(self.arrays.contacts, places, strict=True)])
+        tips = self.after[:, at.TIP_MOTION]
+        there = self._rows_at(
+            [
+                one.at + travel @ (self.arrays.position + increments) + moved
+                for one, travel, moved in zip(self.arrays.contacts, self.travels[:, 0], tips, strict=True)
+            ]
+        )
         # The change of the rows is small: a separate difference keeps its digits.
         travelled = (there - self.rows) @ (self.arrays.position + increments)
         for i, one in enumerate(self.arrays.contacts):
             if one.circle is not None:
                 # The slip is relative to the material, which has the same rows before and after.
-                travelled[i, 1] = (there[i, 1] - self.rows[i, 1]) @ increments
-        gaps = self.gaps + self.rows[:, 0] @ increments + travelled[:, 0] + self.after[:, 2]
-        return gaps, self.rows[:, 1] @ increments + travelled[:, 1] + self.after[:, 0] - self.after[:, 1]
+                travelled[i, 1:] = (there[i, 1:] - self.rows[i, 1:]) @ increments
+        gaps = self.gaps + self.rows[:, 0] @ increments + travelled[:, 0] + self.after[:, at.GAP_MOTION]
+        some = slice(self.tangents)
+        slips = self._slips(increments) + travelled[:, 1:] + self.after[:, TIP[some]] - self.after[:, TRACK[some]]
+        return gaps, slips
 
     def _compliance(self, pushes: Array) -> Array:
         """Return the displacements of rows after the first step for constant unit forces on them."""

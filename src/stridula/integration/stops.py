@@ -78,8 +78,6 @@ def rank_words(arrays: Assembly, blocks: Blocks, state: State) -> str:
     places = state.carried[:, at.ABSCISSA]
     closed = np.flatnonzero(state.carried[:, at.STATUS] > 0)
     rows = [arrays.contacts[i].rows_at(float(places[i])) for i in closed]
-    # The rows of a second tangent have no normal.
-    rows = [pair[1:] if arrays.contacts[i].is_second else pair for i, pair in zip(closed, rows, strict=True)]
     if not rows or not np.isfinite(places[closed]).all():
         return "no contact is closed"
     flat = np.concatenate(rows)

@@ -17,7 +17,8 @@ from ..system import System
 from .point_records import PointRecord
 
 # Columns that are summed over the points of a surface; all others are averaged.
-SUMMED = (at.NORMAL_FORCE, at.TANGENTIAL_FORCE, at.JAMMED, at.LANDINGS)
+SUMMED = (at.NORMAL_FORCE, at.TANGENTIAL_FORCE, at.TANGENTIAL_FORCE_B, at.JAMMED, at.LANDINGS)
+SLIPS = [at.SLIP_VELOCITY, at.SLIP_VELOCITY_B]
 SHARES = slice(at.SEPARATED, at.SLIDING + 1)
 # Variables of maps, means over an interval.
 MAPPED = ("normal_force", "tangential_force", "slip_velocity", STATUS_SHARE.name, STATUS.name)
@@ -33,64 +34,51 @@ class SurfaceRecord:
     ----------
     system : System
         The system.
-    firsts : ndarray, shape (pairs,)
-        Mask of the pairs of rows that are the first of a contact.
     every : int
         Samples in an interval of maps.
     points : PointRecord, optional
         Record of the points at every sample, if wanted.
     """
 
-    def __init__(self, system: System, firsts: Array, every: int, points: PointRecord | None = None) -> None:
+    def __init__(self, system: System, every: int, points: PointRecord | None = None) -> None:
         self.every, self.points = every, points
         members = groups(system.contact_names, system.surface_names)
         self.shown = tuple(one[0] for one in members)
         self.names = tuple(system.surface_names[one[0]] or system.contact_names[one[0]] for one in members)
-        contact_of, is_second = np.cumsum(firsts) - 1, ~firsts
-        rows = [
-            np.flatnonzero(np.isin(contact_of, one) & (is_second == second))
-            for one in members
-            for second in (False, True)
-        ]
-        self.firsts = np.array([number % 2 == 0 for number, one in enumerate(rows) if len(one)])
-        self._rows = [one for one in rows if len(one)]
+        self._members = [np.array(one) for one in members]
         self._points = np.flatnonzero(np.array([bool(name) for name in system.surface_names]))
         self._surfaces = [system.surface_names[number] for number in self._points]
         self._point_names = [system.contact_names[number] for number in self._points]
-        self._first_rows = np.flatnonzero(firsts)
-        self._has_second = np.append(is_second[1:], False)[self._first_rows]
         self._faces = system.faces
         numbers = {name: number for number, name in enumerate(system.contact_names)}
         self._of_face = [[numbers[point.name] for point in face.contacts] for face in self._faces]
         self._resultants: list[list[dict[str, Array]]] = [[] for _ in self._faces]
         self._maps: list[dict[str, Array]] = []
-        self._waiting = np.empty((0, len(firsts), at.COLUMNS))
+        self._waiting = np.empty((0, len(system.contacts), at.COLUMNS))
         # A run may be interrupted before its first chunk.
         self.take(self._waiting)
 
     def take(self, contacts: Array) -> Array:
-        """Record a chunk of all pairs, (samples, pairs, columns), and return it with each surface as one contact."""
+        """Record a chunk, (samples, contacts, columns), and return it with each surface as one contact."""
         for face, numbers, kept in zip(self._faces, self._of_face, self._resultants, strict=True):
             normal, tangential, slip, share = self._of_points(contacts, np.array(numbers))
             kept.append(resultants(face, normal, tangential, share, slip))
         if self.points is not None:
             normal, tangential, _, share = self._of_points(contacts, self._points)
-            landings = contacts[:, self._first_rows[self._points], at.LANDINGS]
+            landings = contacts[:, self._points, at.LANDINGS]
             self.points.take(normal, tangential, share, landings)
         self._keep_maps(contacts)
-        found = np.stack([contacts[:, one].mean(axis=1) for one in self._rows], axis=1)
+        found = np.stack([contacts[:, one].mean(axis=1) for one in self._members], axis=1)
         for column in SUMMED:
-            found[..., column] = np.stack([contacts[:, one, column].sum(axis=1) for one in self._rows], axis=1)
+            found[..., column] = np.stack([contacts[:, one, column].sum(axis=1) for one in self._members], axis=1)
         found[..., at.DOMINANT] = dominant_status(found[..., SHARES])
         return found
 
     def _of_points(self, contacts: Array, numbers: Array) -> tuple[Array, Array, Array, Array]:
         """Return normal and tangential forces, slip velocities and status shares of some contacts."""
-        first = self._first_rows[numbers]
-        second = np.where(self._has_second[numbers], first + 1, first)
-        along = np.stack([contacts[:, first], contacts[:, second] * self._has_second[numbers, None]], axis=2)
-        tangential, slip = along[..., at.TANGENTIAL_FORCE], along[..., at.SLIP_VELOCITY]
-        return contacts[:, first, at.NORMAL_FORCE], tangential, slip, contacts[:, first, SHARES]
+        own = contacts[:, numbers]
+        tangential, slip = own[..., [at.TANGENTIAL_FORCE, at.TANGENTIAL_FORCE_B]], own[..., SLIPS]
+        return own[..., at.NORMAL_FORCE], tangential, slip, own[..., SHARES]
 
     def _keep_maps(self, contacts: Array) -> None:
         waiting = np.concatenate([self._waiting, contacts])

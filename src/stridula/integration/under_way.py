@@ -176,27 +176,26 @@ class _Change:
         self.before, self.marched, self.state = before, marched, before.state
         pairs = zip(before.marched.system.contacts, marched.system.contacts, strict=True)
         self.moved = np.array([now.at - then.at for then, now in pairs])
-        self.places = self.state.carried[before.arrays.firsts, at.ABSCISSA] + self.moved
+        self.places = self.state.carried[:, at.ABSCISSA] + self.moved
         self.travel = self._root_of(before.arrays, before.marched.step) - self._root_of(marched.described, marched.step)
 
     def with_same_modes(self, position: Array, velocity: Array) -> UnderWay:
         """Return the march under other forces and other friction."""
         arrays, state, was = self._shifted(position), self.state, self.before.marched.system
         state.modal[at.D] = velocity * self.marched.step
-        for own, number, is_first in zip(state.carried, arrays.contact_numbers, arrays.firsts, strict=True):
-            law = self.marched.system.contacts[number].friction
-            if type(law) is not type(was.contacts[number].friction):
-                own[at.FRICTION_STATE] = law.states_at_start[0 if is_first else 1]
+        for own, before, now in zip(state.carried, was.contacts, self.marched.system.contacts, strict=True):
+            if type(now.friction) is not type(before.friction):
+                own[[at.FRICTION_STATE, at.FRICTION_STATE_B]] = now.friction.states_at_start
         return self._put(arrays, blocks_of(arrays, self.marched.scheme, self.marched.step), state)
 
     def with_other_modes(self, position: Array, velocity: Array) -> UnderWay:
         """Return the march with other modes or at other places on the track, with contacts opened by their gaps."""
         marched, now = self.marched, self.before.time
         yields = np.array([contact.yields is not None for contact in marched.system.contacts])
-        is_closed = self.state.carried[self.before.arrays.firsts, at.STATUS] != SEPARATED
+        is_closed = self.state.carried[:, at.STATUS] != SEPARATED
         gaps = np.where(is_closed & ~yields, 0.0, self.before.gaps)
         shifted = self._shifted(position)
-        raised = shifted.motion(np.array([now]), marched.step)[0, shifted.firsts, at.GAP_MOTION]
+        raised = shifted.motion(np.array([now]), marched.step)[0, :, at.GAP_MOTION]
         position = position + _opening(shifted, self.places, position, gaps - raised)
         arrays = self._shifted(position)
         blocks = blocks_of(arrays, marched.scheme, marched.step)
@@ -222,20 +221,19 @@ class _Change:
         moved = with_travel(self.marched.described, self.marched.system, self.travel)
         described, step, before = moved.motion, self.marched.step, self.before.imposed
         imposed, offset, contacts = described(np.array([self.before.time]), step)[0], np.zeros(before.shape), []
-        for number, (one, place) in enumerate(zip(moved.contacts, self.places[moved.contact_numbers], strict=True)):
-            if one.contact.path_body is None or one.is_second:
-                offset[number] = before[number] - imposed[number]
+        for number, (one, place) in enumerate(zip(moved.contacts, self.places, strict=True)):
+            offset[number] = before[number] - imposed[number]
+            if one.contact.path_body is None:
                 contacts.append(one)
                 continue
+            offset[number, [at.TRACK_MOTION, at.GAP_MOTION]] = 0.0
             offset[number, at.TIP_MOTION] = -imposed[number, at.TIP_MOTION] - one.fixed[1] @ position
             contacts.append(replace(one, contact=replace(one.contact, at=float(place))))
         return replace(moved, contacts=contacts, motion=lambda times, step: described(times, step) + offset)
 
     def _put(self, arrays: Assembly, blocks: Blocks, state: State) -> UnderWay:
         """Return the march from a state with tips at their places on the track."""
-        contacts = zip(np.flatnonzero(arrays.firsts), self.marched.system.contacts, self.places, strict=True)
-        for row, contact, place in contacts:
-            own = state.carried[row]
+        for own, contact, place in zip(state.carried, self.marched.system.contacts, self.places, strict=True):
             if contact.path_body is not None:
                 own[list(ON_THE_TRACK)] += place - own[at.ABSCISSA]
         return _from(self.marched, arrays, blocks, state, self.before.sample, self.travel, self.before.gaps)
@@ -264,11 +262,10 @@ def _from(
 
 def _opening(arrays: Assembly, places: Array, position: Array, gaps: Array) -> Array:
     """Return the displacement that opens contacts to given gaps, as by contact forces, rigid motions first."""
-    firsts = [one for one in arrays.contacts if not one.is_second]
-    rows = np.array([one.rows_at(place)[0] for one, place in zip(firsts, places, strict=True)])
+    rows = np.array([one.rows_at(place)[0] for one, place in zip(arrays.contacts, places, strict=True)])
     squared = arrays.all_stiffness
     vibrating = np.diag(squared)[np.diag(squared) > 0.0]
     squared += SOFT**2 * (vibrating.min() if vibrating.size else 1.0) * np.eye(rows.shape[1])
     yielded = np.linalg.solve(squared, rows.T)
-    missing = gaps - np.array([one.contact.gap for one in firsts]) - rows @ position
+    missing = gaps - np.array([one.contact.gap for one in arrays.contacts]) - rows @ position
     return np.asarray(yielded @ np.linalg.lstsq(rows @ yielded, missing)[0])

@@ -116,7 +116,7 @@ class Structure:
         self.passing = self._turn(now)
         factors = arrays.signals.factors(now, 1e-6)[:, 0]
         self.load = factors @ arrays.loads
-        moved = arrays.motion(np.array([settled]), 1e-6)[0, arrays.firsts, 2]
+        moved = arrays.motion(np.array([settled]), 1e-6)[0, :, 2]
         self.gaps = moved + [contact.gap for contact in system.contacts]
         if time is None:
             self._check_steady()
@@ -162,12 +162,10 @@ class Structure:
 
     def _lines(self, shifts: Array) -> list[ContactLine]:
         """Return the contacts as rows, their points shifted along their tracks by distances [m]."""
-        pairs = iter(self.arrays.contacts)
         lines = []
-        for contact, way, shift in zip(self.system.contacts, self.ways, shifts.tolist(), strict=True):
-            pair = next(pairs)
-            line = _line(pair, self.system, self.arrays, shift)
-            lines.append(_turned(line, way, *_second(next(pairs), shift)) if contact.is_spatial else line)
+        for one, way, shift in zip(self.arrays.contacts, self.ways, shifts.tolist(), strict=True):
+            line = _line(one, self.system, self.arrays, shift)
+            lines.append(_turned(line, way, *_aside(one, shift)) if one.contact.is_spatial else line)
         return lines
 
     def prescribed(self, status: Sequence[str]) -> Array:
@@ -339,7 +337,7 @@ def _line(one: ContactRows, system: System, arrays: Assembly, shift: float = 0.0
         place(1, touched.body, touched.position)
     if one.circle is not None:
         rows, slopes = one.round_at(one.contact.at + shift), -one.slopes_round_at(one.contact.at + shift)
-        return ContactLine(rows[0], rows[1], nothing, one.travel, slopes[0], slopes[1], nothing, points)
+        return ContactLine(rows[0], rows[1], nothing, one.travel[0], slopes[0], slopes[1], nothing, points)
     if track is None:
         return ContactLine(one.fixed[0], one.fixed[1], nothing, nothing, nothing, nothing, nothing, points)
     at = one.contact.at + shift
@@ -361,23 +359,23 @@ def _check_circles(system: System) -> None:
             raise ArgumentError("track", words, got=f"a velocity of {contact.circle.velocity!r} m/s")
 
 
-def _second(one: ContactRows, shift: float) -> tuple[Array, Array]:
+def _aside(one: ContactRows, shift: float) -> tuple[Array, Array]:
     """Return the row of the second tangent of a contact in space, and the derivative of its track's part along it."""
     if one.circle is None:
-        return one.fixed[1], np.zeros_like(one.fixed[1])
+        return one.fixed[2], np.zeros_like(one.fixed[2])
     place = one.contact.at + shift
-    return one.round_at(place)[1], -one.slopes_round_at(place)[1]
+    return one.round_at(place)[2], -one.slopes_round_at(place)[2]
 
 
-def _turned(line: ContactLine, way: Array, second: Array, second_slope: Array) -> ContactLine:
+def _turned(line: ContactLine, way: Array, aside: Array, slope_aside: Array) -> ContactLine:
     """Return a contact in space with its tangent along the slip, from the rows of both tangents."""
     c, s = way.tolist()
-    line = replace(line, tangent_slope=c * line.tangent_slope + s * second_slope, slip_slope=c * line.slip_slope)
-    across = c * second - s * line.tangent
+    line = replace(line, tangent_slope=c * line.tangent_slope + s * slope_aside, slip_slope=c * line.slip_slope)
+    across = c * aside - s * line.tangent
     size = np.linalg.norm(line.normal) + np.linalg.norm(line.tangent)
     if np.linalg.norm(across) < UNMOVED * size:
         across = np.zeros_like(across)
-    return replace(line, tangent=c * line.tangent + s * second, across=across)
+    return replace(line, tangent=c * line.tangent + s * aside, across=across)
 
 
 def _along_the_slip(rates: Array) -> tuple[Array, Array]:

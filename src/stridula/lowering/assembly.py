@@ -13,7 +13,7 @@ from ..ordinary import of_ordinary_size
 from ..records.probes import Probe
 from ..system import System
 from .contact_rows import ContactRows, contact_rows
-from .coordinates import Coordinates, are_uncoupled, pairs_of
+from .coordinates import Coordinates, are_uncoupled
 from .loads import Load, loads_of
 from .motion import Prescribed, motion_of, prescribed_of
 from .own_laws import check_law
@@ -37,18 +37,18 @@ class Assembly:
     stiffness, dissipation : ndarray, shape (coupled, coupled)
         Stiffness [1/s²] and damping matrix [1/s] of the coupled modes, which come first.
     contacts : list of ContactRows
-        Pairs of rows: one for each contact, followed by another one for its second tangent in space.
+        One for each contact.
     motion : callable
         Motions imposed on the contacts [m] as a function of time and step: of the tip and of the track along the
-        tangent, of the gap; shape (times, pairs, 3).
+        tangents, of the gap; shape (times, contacts, motions).
     loads : ndarray, shape (loads, modes)
         Modal forces of the drives for a unit signal.
     signals : Signals
         Factors of the loads, and the motion imposed on a root.
     position, velocity : ndarray, shape (modes,)
         Modal positions and velocities at the start.
-    friction_state : ndarray, shape (pairs,)
-        Internal states of the friction laws at the start.
+    friction_state : ndarray, shape (contacts, 2)
+        Internal states of the friction laws at the start; only vectors have the latter.
     probes : list of ProbeRows
         One for each probe.
     prescribed : Prescribed
@@ -86,16 +86,6 @@ class Assembly:
         matrix = np.diag(np.where(self.massless, 1.0, self.angular_frequency) ** 2)
         matrix[: self.coupled, : self.coupled] = self.stiffness
         return matrix
-
-    @property
-    def firsts(self) -> Array:
-        """Mask of the pairs of rows that are the first of their contact, shape (pairs,)."""
-        return np.array([not one.is_second for one in self.contacts])
-
-    @property
-    def contact_numbers(self) -> Array:
-        """Number of the contact that each pair of rows belongs to, shape (pairs,)."""
-        return np.cumsum(self.firsts) - 1
 
     @property
     def mode_count(self) -> int:
@@ -143,15 +133,13 @@ def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:
         lumped=coordinates.lumped,
         stiffness=stiffness[:size, :size],
         dissipation=dissipation[:size, :size],
-        contacts=[pair for contact in system.contacts for pair in contact_rows(contact, coordinates, turning)],
+        contacts=[contact_rows(contact, coordinates, turning) for contact in system.contacts],
         motion=motion_of(system, signals.displacement),
         loads=np.array([load.modal for load in loads]).reshape(len(loads), coordinates.size),
         signals=signals,
         position=position,
         velocity=velocity,
-        friction_state=np.array(
-            [state for one in system.contacts for state in one.friction.states_at_start[: pairs_of(one)]]
-        ),
+        friction_state=np.array([one.friction.states_at_start for one in system.contacts]),
         probes=[],
         prescribed=prescribed_of(system, histories),
         spans={system.body_name(body): coordinates.spans[body] for body in system.bodies},
@@ -189,11 +177,11 @@ def with_motion_so_far(arrays: Assembly, offset: Array, start: float, before: Ar
     ----------
     arrays : Assembly
         The system.
-    offset : ndarray, shape (contacts, 3)
+    offset : ndarray, shape (contacts, motions)
         Additional displacement [m].
     start : float
         Time from which it applies [s].
-    before : ndarray, shape (contacts, 3), optional
+    before : ndarray, shape (contacts, motions), optional
         Imposed displacements before that time [m], if they differ.
     """
     described = arrays.motion

@@ -182,9 +182,11 @@ class ContactBlocks:
         Code of its friction law.
     laws : ndarray, shape (contacts, parameters)
         Parameters of its friction law.
-    rows : ndarray, shape (contacts, 2, modes)
-        Constant rows along normal and tangent.
-    compliance : ndarray, shape (2 contacts, 2 contacts)
+    rows : ndarray, shape (rows, modes)
+        Constant rows along normal and tangents of all contacts.
+    first_rows : ndarray of int, shape (contacts + 1,)
+        First row of each contact, that of its normal, and the end of the last.
+    compliance : ndarray, shape (rows, rows)
         Relative displacements [m] of the constant rows for unit forces on each.
     paths : tuple of PathModes or None
         Path of each contact.
@@ -196,6 +198,7 @@ class ContactBlocks:
     codes: Array
     laws: Array
     rows: Array
+    first_rows: Array
     compliance: Array
     paths: tuple[PathModes | None, ...]
     circles: Array
@@ -206,7 +209,8 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
     count = len(arrays.contacts)
     constants, laws = np.zeros((count, at.CONTACT_CONSTANTS)), np.zeros((count, LAW_COLUMNS))
     codes = np.zeros(count, dtype=np.int64)
-    rows = np.array([contact.fixed for contact in arrays.contacts])
+    rows = np.concatenate([contact.fixed for contact in arrays.contacts])
+    first_rows = np.cumsum([0, *(len(contact.fixed) for contact in arrays.contacts)])
     paths = tuple(_path_modes(one) for one in arrays.contacts)
     for i, (one, along) in enumerate(zip(arrays.contacts, paths, strict=True)):
         constants[i, [at.START, at.GAP]] = one.at, one.gap
@@ -220,9 +224,7 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
         constants[i, at.AT_REST] = laws[i, STATIC]
         if one.yields is not None:
             constants[i, at.YIELD_STIFFNESS : at.YIELD_REACH] = one.yields.numbers
-        if one.is_second:
-            codes[i] = at.SECOND_TANGENT
-        elif not one.fixed[0].any() and along is None:
+        if not one.fixed[0].any() and along is None:
             raise ArgumentError(
                 f"contact {one.contact.name or i + 1}",
                 "have a tip or a track that moves along its normal",
@@ -234,10 +236,9 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
     for i, one in enumerate(arrays.contacts):
         if one.circle is not None:
             circles[i] = next(k for k, body in enumerate(arrays.turning) if body.span == one.circle.span)
-            constant[i, :, slice(*one.circle.span)] = 0.0
-    flat = constant.reshape(2 * count, -1)
-    compliance = np.ascontiguousarray(flat @ modes.mobility(flat).T)
-    return ContactBlocks(constants, codes, laws, rows, compliance, paths, circles)
+            constant[first_rows[i] : first_rows[i + 1], slice(*one.circle.span)] = 0.0
+    compliance = np.ascontiguousarray(constant @ modes.mobility(constant).T)
+    return ContactBlocks(constants, codes, laws, rows, first_rows, compliance, paths, circles)
 
 
 def _reach(arrays: Assembly, modes: Recurrence) -> Array:
@@ -269,7 +270,7 @@ class ProbeBlocks:
         Rows on positions, sums or differences of increments.
     direct : ndarray, shape (probes, signals)
         Shares of the signals.
-    contact : ndarray, shape (probes, contacts, 2)
+    contact : ndarray, shape (probes, rows)
         Shares of the normal and tangential forces.
     """
 
@@ -283,7 +284,8 @@ def probe_blocks(arrays: Assembly, step: float) -> ProbeBlocks:
     """Return the probes as arrays for the march."""
     count = len(arrays.probes)
     rows, kinds = np.zeros((count, arrays.mode_count)), np.zeros(count, dtype=np.int64)
-    direct, contact = np.zeros((count, len(arrays.signals))), np.zeros((count, len(arrays.contacts), 2))
+    direct, contact_rows = np.zeros((count, len(arrays.signals))), sum(len(one.fixed) for one in arrays.contacts)
+    contact = np.zeros((count, contact_rows))
     scale = np.array([1.0, 0.5 / step, 1.0 / step**2])
     for p, probe in enumerate(arrays.probes):
         kinds[p] = np.argmax(probe.rows.any(axis=1))
@@ -332,9 +334,9 @@ def blocks_of(arrays: Assembly, scheme: Scheme, step: float) -> Blocks:
     modes = recurrence(arrays, scheme, step)
     for one in arrays.turning:
         _check_turned(abs(one.turning.velocity) * max(one.turning.order), step, "the waves of a body turn by")
-    for pair in arrays.contacts:
-        if pair.circle is not None and pair.contact.circle is not None:
-            passed = abs(pair.contact.circle.velocity) * pair.rate * max(pair.circle.turning.order)
+    for own in arrays.contacts:
+        if own.circle is not None and own.contact.circle is not None:
+            passed = abs(own.contact.circle.velocity) * own.rate * max(own.circle.turning.order)
             _check_turned(passed, step, "a contact passes over waves by")
     turning = tuple(
         TurningBlocks(

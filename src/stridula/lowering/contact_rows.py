@@ -18,18 +18,16 @@ STATEFUL = tuple(law.law for law in LAWS if law.state_units)
 
 @dataclass(frozen=True)
 class ContactRows:
-    """One contact as rows on the modes; in space two consecutive pairs of rows.
+    """One contact as rows on the modes: that of its normal, then one for each tangent.
 
     Attributes
     ----------
     contact : PointContact
         The contact.
-    fixed : ndarray, shape (2, modes)
-        Displacement of the tip, minus that of a touched point, along normal and tangent.
+    fixed : ndarray, shape (1 + tangents, modes)
+        Displacement of the tip, minus that of a touched point, along normal and tangents.
     bending, axial : tuple of int
         Ranges of the modes of each kind of a track along which the tip moves.
-    is_second : bool
-        Whether the tangent is the second of a contact in space; its normal is then zero.
     circle : TurningModes or None
         Modes of the body round which the tip moves; its rows in `fixed` are those at the start.
     """
@@ -38,17 +36,16 @@ class ContactRows:
     fixed: Array
     bending: tuple[int, int] = (0, 0)
     axial: tuple[int, int] = (0, 0)
-    is_second: bool = False
     circle: TurningModes | None = None
 
     @property
     def travel(self) -> Array:
-        """Row of the travel of the contact point along the tangent, shape (modes,); on a circle, of the tip alone."""
-        if self.circle is None:
-            return self.fixed[1]
-        row = self.fixed[1].copy()
-        row[slice(*self.circle.span)] = 0.0
-        return row
+        """Rows of the travel of the contact point, shape (tangents, modes); on a circle, of the tip alone."""
+        rows = self.fixed[1:]
+        if self.circle is not None:
+            rows = rows.copy()
+            rows[:, slice(*self.circle.span)] = 0.0
+        return rows
 
     def force_at(self, indentation: float, velocity: float) -> float:
         """Return the normal force [N] of a compliant contact at an indentation [m] that grows with a velocity [m/s]."""
@@ -67,7 +64,7 @@ class ContactRows:
         return self.fixed + [self.circle.turned(row, angle * self.circle.orders) for row in self.fixed]
 
     def slopes_round_at(self, place: float) -> Array:
-        """Return the derivatives of these rows along the circle [1/m], shape (2, modes)."""
+        """Return the derivatives of these rows along the circle [1/m], shape (1 + tangents, modes)."""
         assert self.circle is not None
         rows, (first, second) = self.round_at(place), self.circle.pairs.T
         slopes = np.zeros_like(rows)
@@ -83,34 +80,32 @@ class ContactRows:
 
     @property
     def at(self) -> float:
-        """Abscissa along the tangent at the start [m]."""
-        return 0.0 if self.is_second else self.contact.at
+        """Abscissa along the first tangent at the start [m]."""
+        return self.contact.at
 
     def rows_at(self, place: float) -> Array:
-        """Return the rows along normal and tangent with the tip at an abscissa [m] of its track."""
+        """Return the rows along normal and tangents with the tip at an abscissa [m] of its track."""
         if self.circle is not None:
             return self.round_at(place)
         track = self.contact.path_body
-        if track is None or self.is_second:
+        if track is None:
             return self.fixed
         full, (low, high) = self.fixed.copy(), track.ends
-        full[:, self.bending[0] : self.axial[1]] -= (track.axes @ track.trace(min(max(place, low), high)))[::-1]
+        full[:2, self.bending[0] : self.axial[1]] -= (track.axes @ track.trace(min(max(place, low), high)))[::-1]
         return full
 
     @property
     def yields(self) -> ContactStiffness | None:
-        """Stiffness of the contact along the normal, None if it is rigid and for the second tangent."""
-        return None if self.is_second else self.contact.yields
+        """Stiffness of the contact along the normal, None if it is rigid."""
+        return self.contact.yields
 
     @property
     def gap(self) -> float:
         """Gap at the start [m]."""
-        return 0.0 if self.is_second else self.contact.gap
+        return self.contact.gap
 
 
-def contact_rows(
-    contact: PointContact, coordinates: Coordinates, turning: tuple[TurningModes, ...]
-) -> list[ContactRows]:
+def contact_rows(contact: PointContact, coordinates: Coordinates, turning: tuple[TurningModes, ...]) -> ContactRows:
     frame = contact.frame
     fixed = frame @ coordinates.trace(contact.tip)[: len(frame)]
     if contact.touched_point is not None:
@@ -118,17 +113,11 @@ def contact_rows(
     if contact.friction.depends_on_speed:
         # Without mass nothing balances friction that falls with the slip speed.
         fixed[1:, coordinates.massless] = 0.0
-    if contact.is_spatial:
-        second = np.stack([np.zeros_like(fixed[0]), fixed[2]])
-        circle = None
-        if contact.circle is not None:
-            span = coordinates.spans[contact.track_body]
-            circle = next(one for one in turning if one.span == span)
-        return [
-            ContactRows(contact, fixed[:2], *_path_spans(contact, coordinates), circle=circle),
-            ContactRows(contact, second, is_second=True, circle=circle),
-        ]
-    return [ContactRows(contact, fixed, *_path_spans(contact, coordinates))]
+    circle = None
+    if contact.circle is not None:
+        span = coordinates.spans[contact.track_body]
+        circle = next(one for one in turning if one.span == span)
+    return ContactRows(contact, fixed, *_path_spans(contact, coordinates), circle=circle)
 
 
 def _path_spans(contact: PointContact, coordinates: Coordinates) -> tuple[tuple[int, int], tuple[int, int]]:

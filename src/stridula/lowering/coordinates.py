@@ -12,7 +12,6 @@ from ..arrays import Array
 from ..bodies import BodyPoint
 from ..bodies.modes import Modes
 from ..connections import ends, unit
-from ..contact import PointContact
 from ..ordinary import check_coupled_count
 from ..system import System
 
@@ -63,9 +62,9 @@ class Coordinates:
         return max(end for _, end in self.spans.values())
 
     @cached_property
-    def pairs(self) -> int:
-        """Number of pairs of rows of all contacts."""
-        return sum(map(pairs_of, self.system.contacts))
+    def contact_rows(self) -> int:
+        """Number of rows of all contacts, one for each normal and tangent."""
+        return sum(len(contact.frame) for contact in self.system.contacts)
 
     def modes(self, body: Any) -> Modes:
         """Return the modes of a body."""
@@ -191,8 +190,3 @@ def _is_diagonal(matrix: Array) -> bool:
 def _in_space(rows: Array) -> Array:
     """Return rows of a body along x, y and z; a body in the plane is rigid along z."""
     return rows if len(rows) == 3 else np.concatenate([rows, np.zeros((1, rows.shape[1]))])
-
-
-def pairs_of(contact: PointContact) -> int:
-    """Return the number of pairs of rows of a contact."""
-    return len(contact.frame) - 1

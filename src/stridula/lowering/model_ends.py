@@ -96,7 +96,7 @@ def _once(names: Iterable[str]) -> str:
 
 def _near_cutoff(system: System, arrays: Assembly, duration: float) -> Iterator[str]:
     """Yield a note on the contact whose vibration on its stiffness is nearest to the cutoff of a body."""
-    soft = [number for number, one in zip(arrays.contact_numbers, arrays.contacts, strict=True) if one.yields]
+    soft = [number for number, one in enumerate(arrays.contacts) if one.yields]
     ends = [_cutoff(system, number) for number in soft]
     if arrays.mode_count > MOST_MODES or not any(frequency < math.inf for frequency, _ in ends):
         return

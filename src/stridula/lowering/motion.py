@@ -7,13 +7,16 @@ from typing import Any
 
 import numpy as np
 
+from .._kernels.layout import columns as at
 from ..arrays import Array
 from ..bodies.turning import Turning
 from ..contact import PointContact
 from ..histories import Constant, History
 from ..system import System
-from .coordinates import pairs_of
 from .signals import Signal
+
+# Columns of the motions of the tip and of the track along both tangents.
+TIP, TRACK = (at.TIP_MOTION, at.TIP_MOTION_B), (at.TRACK_MOTION, at.TRACK_MOTION_B)
 
 
 @dataclass(frozen=True)
@@ -79,35 +82,35 @@ def motion_of(system: System, imposed: Signal) -> Signal:
     """Return the motions imposed on every contact: by a body under an imposed velocity, by a moving rigid track."""
 
     alongs = [contact.frame[:, 0].tolist() for contact in system.contacts]
-    pairs = [pairs_of(contact) for contact in system.contacts]
-    firsts = (np.cumsum(pairs) - pairs).tolist()
     # Computed once, since locating a point on a body takes long.
     turnings = [contact.turning_velocities for contact in system.contacts]
 
     def motion(time: Array, step: float) -> Array:
-        values = np.zeros((time.size, sum(pairs), 3))
-        each = zip(firsts, system.contacts, alongs, turnings, strict=True)
-        for number, contact, (normal_x, *tangents_x), passing in each:
-            held = [(0, 1.0)] if system.is_held(contact.tip.body) else []
-            held += [(1, -1.0)] if touches_held(contact, system) else []
-            for side, sign in held:
+        values = np.zeros((time.size, len(alongs), at.MOTIONS))
+        for own, contact, along, passing in zip(
+            np.moveaxis(values, 1, 0), system.contacts, alongs, turnings, strict=True
+        ):
+            normal_x, *tangents_x = along
+            held = [(TIP, 1.0)] if system.is_held(contact.tip.body) else []
+            held += [(TRACK, -1.0)] if touches_held(contact, system) else []
+            for columns, sign in held:
                 moved = imposed(time, step)
-                for pair, tangent_x in enumerate(tangents_x):
-                    values[:, number + pair, side] += tangent_x * moved
-                values[:, number, 2] += sign * normal_x * moved
-            for pair, speed in enumerate(contact.surface_velocities):
+                for column, tangent_x in zip(columns, tangents_x, strict=False):
+                    own[:, column] += tangent_x * moved
+                own[:, at.GAP_MOTION] += sign * normal_x * moved
+            for column, speed in zip(TRACK, contact.surface_velocities, strict=False):
                 if speed:
-                    values[:, number + pair, 1] += speed * time
+                    own[:, column] += speed * time
             if contact.circle is not None:
-                values[:, number, 0] += contact.circle.travel(time)
+                own[:, at.TIP_MOTION] += contact.circle.travel(time)
             for turning, speeds in passing:
-                for pair, speed in enumerate(speeds):
-                    values[:, number + pair, 1] += speed * turning.history.integral(time)
+                for column, speed in zip(TRACK, speeds, strict=False):
+                    own[:, column] += speed * turning.history.integral(time)
             if contact.rigid_track is not None:
-                values[:, number, 1] += contact.rigid_track.travel(time)
-                values[:, number, 2] -= contact.rigid_track.normal_travel(time)
+                own[:, at.TRACK_MOTION] += contact.rigid_track.travel(time)
+                own[:, at.GAP_MOTION] -= contact.rigid_track.normal_travel(time)
                 if contact.is_spatial:
-                    values[:, number + 1, 1] += contact.rigid_track.lateral_travel(time)
+                    own[:, at.TRACK_MOTION_B] += contact.rigid_track.lateral_travel(time)
         return values
 
     return motion

@@ -72,11 +72,12 @@ def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
     """Return the layout of runs of the same kind, with `per_block` numbers of each in a block."""
     contacts, modes = runs[0].contacts, runs[0].modes
     places = _Places(contacts, modes.coupled, modes.block.shape[1], per_block, runs[0].turning)
-    seen = np.any([one.contacts.rows.any(axis=1) for one in runs], axis=0)
+    acts = np.any([one.contacts.rows != 0.0 for one in runs], axis=0)
+    seen = np.logical_or.reduceat(acts, contacts.first_rows[:-1])
     spans: list[tuple[int, ...]] = []
     first_span = [0]
     for i, along in enumerate(contacts.paths):
-        if len(contacts.paths) == 1 and not modes.coupled:
+        if len(contacts.rows) == 2 and not modes.coupled:
             spans.append((0, places.plain, at.CONSTANT, 0, 0))
         else:
             body = int(contacts.circles[i])
@@ -89,18 +90,19 @@ def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
             spans += places.path_spans[_key(along)]
         first_span.append(len(spans))
     sets, numbers = _wave_sets(contacts, per_block)
-    count = len(contacts.paths)
+    count, rows = len(contacts.paths), int(contacts.first_rows[-1])
     sizes = Sizes(
         places.blocks,
         places.coupled,
         per_block,
         count,
-        -(-2 * count // per_block),
+        -(-rows // per_block),
+        rows,
         len(modes.loads),
         any(along is not None for along in contacts.paths) or bool((contacts.circles >= 0).any()),
         any(along is not None and along.normal.start < modes.coupled for along in contacts.paths)
         or any(runs[0].turning[body].pairs.min() < modes.coupled for body in contacts.circles if body >= 0),
-        bool((contacts.codes == at.SECOND_TANGENT).any()),
+        bool((np.diff(contacts.first_rows) > 2).any()),
         bool((contacts.circles >= 0).any()),
     )
     along_of, across_of = np.array(places.waves, dtype=np.int64).reshape(-1, 2).T.copy()
@@ -294,17 +296,16 @@ def scale_of(modes: Recurrence) -> Array:
 def rows_of(blocks: Blocks, scale: Array) -> Array:
     """Return all rows over the modes of a run, those of its state, the first two, without values."""
     contacts, modes = blocks.contacts, blocks.modes
-    count, size = len(contacts.paths), scale.size
-    used = CONTACTS + 2 * count + 2 * len(modes.loads) + len(blocks.probes.rows)
+    used = CONTACTS + len(contacts.rows) + 2 * len(modes.loads) + len(blocks.probes.rows)
     # The number of vectors is odd, so that the same rows of all blocks do not share a part of the cache.
-    rows = np.zeros((used + 1 - used % 2, size))
+    rows = np.zeros((used + 1 - used % 2, scale.size))
     rows[2:4] = modes.block[[at.B, at.R]]
     for along in contacts.paths:
         if along is not None:
             _put_waves(rows[AMPLITUDE:CONTACTS], along)
     rows[AMPLITUDE:CONTACTS] *= scale
     parts = (
-        contacts.rows.reshape(2 * count, size) * scale,
+        contacts.rows * scale,
         modes.loads / scale,
         modes.forces * scale,
         blocks.probes.rows * scale,
@@ -351,7 +352,7 @@ def reach_of(where: Layout, runs: Sequence[Recurrence]) -> Array:
 
 def compliance_in_blocks(compliances: Sequence[Array], sizes: Sizes, width: int) -> Array:
     """Return the compliances of runs with space for displacements of their contacts, shape (rows, blocks, width)."""
-    size = 2 * sizes.contacts
+    size = sizes.rows
     rows = COMPLIANCE + 2 * size
     out = aligned(rows, sizes.faces * width).reshape(rows, sizes.faces, width)
     block, lane = np.divmod(np.arange(size), sizes.per_block)
@@ -363,11 +364,11 @@ def compliance_in_blocks(compliances: Sequence[Array], sizes: Sizes, width: int)
 
 def room_to_solve(sizes: Sizes, width: int) -> tuple[Array, Array]:
     """Return space for the equations of all contact forces, shape (rows, blocks, width), and for places in them."""
-    rows = 2 * sizes.contacts + FURTHER_ROWS + sizes.per_block
+    rows = sizes.rows + FURTHER_ROWS + sizes.per_block
     out = aligned(rows, sizes.faces * width).reshape(rows, sizes.faces, width)
     if sizes.faces and sizes.per_block > 1:
         out[SAVED - sizes.per_block : SAVED, 0] = np.tri(width, k=-1).T[::-1]
-    return out, np.zeros((2 * sizes.contacts, width), dtype=np.int64)
+    return out, np.zeros((sizes.rows, width), dtype=np.int64)
 
 
 def turns_of(where: Layout, bodies: Sequence[Sequence[TurningBlocks]], width: int) -> Array:
@@ -382,7 +383,7 @@ def turns_of(where: Layout, bodies: Sequence[Sequence[TurningBlocks]], width: in
 
 def at_start(where: Layout, rows: Array) -> Array:
     """Return the rows of the contacts at the start, shape (blocks, rows, width); none if none moves round."""
-    count = 2 * where.sizes.contacts if where.sizes.circles else 0
+    count = where.sizes.rows if where.sizes.circles else 0
     kept = rows[:, CONTACTS : CONTACTS + count]
     out = aligned(len(rows), kept.shape[1] * rows.shape[2]).reshape(kept.shape)
     out[:] = kept

@@ -28,8 +28,8 @@ class ProbeRows:
         Shares of the factors of the loads.
     imposed : ndarray, shape (3,)
         Shares of the imposed displacement, velocity and acceleration.
-    contact : ndarray, shape (contacts, 2)
-        Shares of the normal and of the tangential force of each contact.
+    contact : ndarray, shape (rows,)
+        Shares of the normal and the tangential forces of all contacts.
     is_of_body : bool
         Whether it is from a probe of all modes of a body.
     """
@@ -51,7 +51,7 @@ def probe_rows(probe: Probe, coordinates: Coordinates, loads: list[Load]) -> lis
     if not isinstance(probe, Reaction) and probe.body not in coordinates.system.bodies:
         raise ArgumentError("probe", "be on a body of this system", probe, got=f"one on {brief(probe.body)}")
     blank = ProbeRows(
-        np.zeros((3, coordinates.size)), np.zeros(len(loads)), np.zeros(3), np.zeros((coordinates.pairs, 2))
+        np.zeros((3, coordinates.size)), np.zeros(len(loads)), np.zeros(3), np.zeros(coordinates.contact_rows)
     )
     if hasattr(probe, "of_each"):
         modes = probe.of_each(coordinates.modes(probe.body).count)
@@ -98,7 +98,7 @@ def _reaction_rows(probe: Reaction, coordinates: Coordinates, loads: list[Load],
     matrix = np.zeros((3, coordinates.size))
     matrix[2] = coordinates.blended(beam, reaction.mass[component])
     shares = np.array([-reaction.held[component] * load.root[component] for load in loads])
-    contact = blank.contact.copy()
+    contact = blank.contact.copy().reshape(-1, 2)
     for number, point in enumerate(system.contacts):
         # The force on the tip is the normal force along the normal minus the tangential force along the tangent.
         signs = np.array([-1.0, 1.0])
@@ -108,4 +108,4 @@ def _reaction_rows(probe: Reaction, coordinates: Coordinates, loads: list[Load],
         if point.touched_point is not None and point.touched_point.body == beam:
             lever = beam.root_lever(point.touched_point.position)[component]  # type: ignore[arg-type]
             contact[number] -= reaction.held[component] * signs * (point.frame @ lever)
-    return replace(blank, rows=matrix, loads=shares, contact=contact)
+    return replace(blank, rows=matrix, loads=shares, contact=contact.ravel())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .._kernels.layout import columns as at
 from ..arrays import Array
 from .assembly import Assembly
 
@@ -43,7 +44,7 @@ def expected_stiffness(arrays: Assembly, duration: float) -> Array:
         return np.array([one.yields.numbers[0] for one in soft if one.yields is not None])
     times = np.linspace(0.0, duration, TIMES)
     factors = arrays.signals.factors(times, times[1])
-    lifts = np.gradient(arrays.motion(times, times[1])[:, :, 2], times, axis=0)
+    lifts = np.gradient(arrays.motion(times, times[1])[:, :, at.GAP_MOTION], times, axis=0)
     found = []
     for number, one in enumerate(arrays.contacts):
         if one.yields is None:

@@ -56,10 +56,10 @@ def to_dataset(
 
     Arrays of the contacts have the shapes (contacts, samples), and (samples, contacts, 3) for the status. `motion` is
     the motion imposed on each contact a step before the end and at the end, and its displacement beyond these, shape
-    (3, contacts, 3). `probe_values` are those of probes, those of all modes of bodies, and the times of the latter
-    unless they are those of the samples. `raw` are the last values of both at every step, which the low-passes still
-    need, shape (steps, values). `shown` has the names of rows that represent several contacts, by the number of one of
-    these.
+    (3, contacts, motions). `probe_values` are those of probes, those of all modes of bodies, and the times of the
+    latter unless they are those of the samples. `raw` are the last values of both at every step, which the low-passes
+    still need, shape (steps, values). `shown` has the names of rows that represent several contacts, by the number of
+    one of these.
     """
     words = described("s", "time at the end of the sample interval")
     coordinates: dict[str, Any] = {

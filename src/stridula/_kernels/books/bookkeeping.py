@@ -6,7 +6,7 @@ from ..contact.pressing import stored_in
 from ..contact.solves import anchor_after, carried_by, law_of, next_on_way, resting
 from ..contact.yielding import about_indentation, path_of, yields_of
 from ..lanes.compiled import inlined
-from ..lanes.operations import Array, Number, Numbers, Runs, add, anywhere, choose, held, hold, magnitude, read
+from ..lanes.operations import Array, Number, Numbers, Pair, Runs, add, anywhere, choose, held, hold, magnitude, read
 from ..layout import columns as at
 from ..layout.contact_values import Before, Free, Moved, Touch
 from ..layout.parts import Carried, Contacts, Parts
@@ -48,18 +48,28 @@ def share_states(i: int, touch: Touch, free: Free, gap: Number, before: Before, 
 
 
 @inlined
-def keep_anchor(i: int, slip: Number, law: int, status: Number, was: Number, carried: Array, runs: Runs) -> None:
-    """Carry the anchor of a stick of contact `i`; on its way through the step a contact may stop after a slip."""
-    base = i * at.CARRIED
-    place = held(carried, base + at.MATERIAL, runs) + (runs.zero if law == at.COULOMB else slip)
-    anchor = held(carried, base + at.ANCHOR, runs)
-    hold(carried, base + at.ANCHOR, runs, anchor_after(anchor, place, status, was))
+def keep_anchor(carried: Array, material: int, anchor: int, law: int, slip: Number, status: Pair, runs: Runs) -> None:
+    """Carry the anchor of a stick along the tangent of two rows; on its way through the step it may stop after a slip.
+
+    `status` are those of this step and of the last.
+    """
+    now, was = status
+    place = held(carried, material, runs) + (runs.zero if law == at.COULOMB else slip)
+    hold(carried, anchor, runs, anchor_after(held(carried, anchor, runs), place, now, was))
 
 
 @inlined
 def centred(motion: Array, n: int, column: int, zero: Number) -> Number:
     """Return the motion of a step, half the sum over the steps before and after."""
     return 0.5 * (read(motion, n + 2, column, zero) - read(motion, n, column, zero))
+
+
+@inlined
+def driven_along_b(i: int, tangential: Number, motion: Array, n: int, runs: Runs) -> Number:
+    """Return the work of the motions imposed on contact `i` along tangent b through its force in step `n`."""
+    column = i * at.MOTIONS * runs.columns + runs.first
+    tip = centred(motion, n, column + at.TIP_MOTION_B * runs.columns, runs.zero)
+    return tangential * (tip - centred(motion, n, column + at.TRACK_MOTION_B * runs.columns, runs.zero))
 
 
 @inlined
@@ -110,15 +120,20 @@ def keep_tangential(i: int, tangential: Number, carried: Array, sums: Array, run
 
 
 @inlined
-def keep_motion(i: int, moved: Moved, stuck: Number, last_slip: Number, carried: Array, runs: Runs) -> None:
-    """Carry gap and slip of contact `i` to the next step; none where it sticks throughout, as it is rounding."""
+def keep_gap(i: int, gap: Number, carried: Array, runs: Runs) -> None:
+    """Carry the gap of contact `i` to the next step."""
     base = i * at.CARRIED
-    hold(carried, base + at.EARLIER_SLIP, runs, last_slip)
-    hold(carried, base + at.LAST_SLIP, runs, choose(stuck >= 1.0, runs.zero, moved.slip))
     hold(carried, base + at.EARLIEST_GAP, runs, held(carried, base + at.EARLIER_GAP, runs))
     hold(carried, base + at.EARLIER_GAP, runs, held(carried, base + at.LAST_GAP, runs))
-    hold(carried, base + at.LAST_GAP, runs, moved.gap)
-    add(carried, base + at.MATERIAL, runs, moved.slip)
+    hold(carried, base + at.LAST_GAP, runs, gap)
+
+
+@inlined
+def keep_slip(carried: Array, material: int, last: int, earlier: int, slip: Number, stuck: Number, runs: Runs) -> None:
+    """Carry the slip along the tangent of three rows; none where it sticks throughout, as it is rounding."""
+    hold(carried, earlier, runs, held(carried, last, runs))
+    hold(carried, last, runs, choose(stuck >= 1.0, runs.zero, slip))
+    add(carried, material, runs, slip)
 
 
 @inlined
@@ -135,7 +150,7 @@ def keep_place(i: int, carried: Array, place: Number, runs: Runs) -> Number:
 def store_in(i: int, gap: Number, contacts: Contacts, state: Carried, runs: Runs) -> None:
     """Add the energy that a yielding contact stores in this step to the work of the contacts."""
     yields = yields_of(i, contacts.constants, runs)
-    if anywhere(yields[0] > 0.0):
+    if anywhere(yields.stiffness > 0.0):
         now, before, _ = path_of(i, state.carried, runs)
         stored = stored_in(-gap, now, yields) - stored_in(now, before, yields)
         add(state.energies, at.CONTACT_WORK, runs, stored)
@@ -147,7 +162,7 @@ def stored_in_contacts(contacts: Contacts, carried: Array, count: int, runs: Run
     energy = runs.zero
     for i in range(count):
         yields = yields_of(i, contacts.constants, runs)
-        if anywhere(yields[0] > 0.0):
+        if anywhere(yields.stiffness > 0.0):
             now, before, _ = path_of(i, carried, runs)
             energy += stored_in(now, before, yields)
     return energy
@@ -164,7 +179,8 @@ def keep_books(i: int, free: Free, touch: Touch, moved: Moved, parts: Parts, n: 
         give = held(contacts.now, i * at.IN_STEP + at.GIVE, runs)
         free = about_indentation(free, give, held(contacts.now, i * at.IN_STEP + at.BEYOND, runs))
         closed = share_states(i, touch, free, moved.gap, before, parts, runs)
-        keep_anchor(i, moved.slip, law, touch.status, before.status, carried, runs)
+        status = touch.status, before.status
+        keep_anchor(carried, base + at.MATERIAL, base + at.ANCHOR, law, moved.slip, status, runs)
         if parts.imposed.motion.shape[0] > 1:
             driven = driven_work(i, touch.normal, touch.tangential, parts.imposed.motion, n, runs)
             add(state.energies, at.CONTACT_WORK, runs, -driven)
@@ -176,7 +192,8 @@ def keep_books(i: int, free: Free, touch: Touch, moved: Moved, parts: Parts, n: 
         lost = keep_forces(i, touch, moved, carried, contacts, closed, runs)
         keep_tangential(i, touch.tangential, carried, contacts.sums, runs)
         add(state.energies, at.FRICTION_LOSS, runs, lost)
-    keep_motion(i, moved, stuck, before.slip, carried, runs)
+    keep_gap(i, moved.gap, carried, runs)
+    keep_slip(carried, base + at.MATERIAL, base + at.LAST_SLIP, base + at.EARLIER_SLIP, moved.slip, stuck, runs)
 
 
 @inlined

@@ -5,7 +5,7 @@ from ..lanes.compiled import inlined, pasted
 from ..lanes.operations import Array, Number, Runs, choose, held, hold, read, write
 from ..layout import columns as at
 from ..layout.parts import Parts
-from ..layout.rows import CONTACTS, D, Q
+from ..layout.rows import CONTACTS, D, Q, has_b
 from ..modes.blocks import product
 
 
@@ -18,11 +18,11 @@ def remember_probes(rows: Array, first: int, kinds: Array, spans: Array, last: A
 
 
 @pasted
-def keep_probes(parts: Parts, n: int, runs: Runs) -> None:
+def keep_probes(space: bool | None, parts: Parts, n: int, runs: Runs) -> None:
     """Record the values of the probes at step `n`, which is complete."""
     sizes, rows, now = parts.sizes, parts.modes.rows, parts.contacts.now
     kinds, spans, direct, shares, last, passing = parts.probes
-    first, signals = CONTACTS + 2 * sizes.contacts + 2 * sizes.loads, parts.imposed.signals
+    first, signals, of_contacts = CONTACTS + sizes.rows + 2 * sizes.loads, parts.imposed.signals, parts.contacts.rows
     for p in range(kinds.size):
         seen = Q if kinds[p] == at.DISPLACEMENT else D
         found = product(rows, first + p, seen, spans[p, 0], spans[p, 1], runs)
@@ -34,9 +34,11 @@ def keep_probes(parts: Parts, n: int, runs: Runs) -> None:
         elif kinds[p] == at.ACCELERATION:
             value = (found + passes) - (value + passed)
         for i in range(sizes.contacts):
-            here, share = i * at.IN_STEP, 2 * (p * sizes.contacts + i)
+            here, share = i * at.IN_STEP, p * sizes.rows + of_contacts[i]
             value += held(shares, share, runs) * held(now, here + at.NORMAL_NOW, runs)
             value += held(shares, share + 1, runs) * held(now, here + at.TANGENTIAL_NOW, runs)
+            if space is not None and has_b(of_contacts, i):
+                value += held(shares, share + 2, runs) * held(now, here + at.TANGENTIAL_NOW_B, runs)
         for j in range(signals.shape[1] // runs.columns):
             column = j * runs.columns + runs.first
             factor = read(signals, n if signals.shape[0] > 1 else 0, column, runs.zero)
@@ -45,13 +47,17 @@ def keep_probes(parts: Parts, n: int, runs: Runs) -> None:
 
 
 @inlined
-def begin_sample(sums: Array, carried: Array, count: int, runs: Runs) -> None:
+def begin_sample(space: bool | None, sums: Array, carried: Array, count: int, runs: Runs) -> None:
     """Begin the sums of a sample."""
     for i in range(count):
         for column in range(at.FIRST_MATERIAL):
             hold(sums, i * at.SUMS + column, runs, runs.zero)
         material = held(carried, i * at.CARRIED + at.MATERIAL, runs)
         hold(sums, i * at.SUMS + at.FIRST_MATERIAL, runs, material)
+        if space is not None:
+            hold(sums, i * at.SUMS + at.TANGENTIALS_B, runs, runs.zero)
+            material = held(carried, i * at.CARRIED + at.MATERIAL_B, runs)
+            hold(sums, i * at.SUMS + at.FIRST_MATERIAL_B, runs, material)
 
 
 @inlined
@@ -91,10 +97,25 @@ def record_contact(i: int, height: Number, parts: Parts, sample: int, runs: Runs
 
 
 @inlined
-def height_of(rows: Array, i: int, spans: Array, first: int, end: int, runs: Runs) -> Number:
-    """Return the displacement along the normal of the constant rows of contact `i`."""
+def record_along_b(i: int, parts: Parts, sample: int, runs: Runs) -> None:
+    """Write what a contact has along tangent b to its record."""
+    sums, carried, record = parts.contacts.sums, parts.state.carried, parts.records.contacts
+    step, tally, base, share = parts.timing.step, i * at.SUMS, i * at.CARRIED, 1.0 / parts.timing.steps_per_sample
+    column = i * at.COLUMNS * runs.columns + runs.first
+    moved = held(carried, base + at.MATERIAL_B, runs) - held(sums, tally + at.FIRST_MATERIAL_B, runs)
+    pulled = held(sums, tally + at.TANGENTIALS_B, runs) * share
+    write(record, sample, at.TANGENTIAL_FORCE_B * runs.columns + column, pulled)
+    place = held(carried, base + at.ABSCISSA_B, runs)
+    write(record, sample, at.CONTACT_POSITION_B * runs.columns + column, place)
+    write(record, sample, at.SLIP_VELOCITY_B * runs.columns + column, moved * (share / step))
+    write(record, sample, at.LAW_STATE_B * runs.columns + column, held(carried, base + at.FRICTION_STATE_B, runs))
+
+
+@inlined
+def height_of(rows: Array, normal: int, spans: Array, first: int, end: int, runs: Runs) -> Number:
+    """Return the displacement of the constant rows of a contact along the row of its normal."""
     height = runs.zero
     for s in range(first, end):
         if spans[s, at.KIND] == at.CONSTANT:
-            height += product(rows, CONTACTS + 2 * i, Q, spans[s, at.BEGIN], spans[s, at.END], runs)
+            height += product(rows, CONTACTS + normal, Q, spans[s, at.BEGIN], spans[s, at.END], runs)
     return height

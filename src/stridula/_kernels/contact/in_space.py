@@ -1,6 +1,5 @@
 """Step 5 for contacts in space, which have two tangents.
 
-The march has two pairs of rows for each: the normal with the first tangent, then no normal with the second tangent.
 Friction acts along one direction u of the tangent plane. Along u the contact is like one of the plane; u is the
 direction without velocity across it. Under laws whose friction changes within a step the slip goes its way as a vector:
 see `law_in_space`.
@@ -9,7 +8,7 @@ see `law_in_space`.
 import math
 
 from ..lanes.compiled import inlined, strict, strict_pasted
-from ..lanes.operations import Array, Number, Runs, choose, component, held, hold
+from ..lanes.operations import Array, Number, Runs, component, held, hold
 from ..layout import columns as at
 from ..layout.contact_values import (
     Before,
@@ -24,12 +23,12 @@ from ..layout.contact_values import (
     TouchInSpace,
 )
 from ..layout.laws import STATIC
-from ..layout.parts import Contacts, Sizes
+from ..layout.parts import Contacts
 from ..layout.rows import COMPLIANCE, DISPLACEMENT
 from .exact import SLIDING
 from .lanewise import lanewise
 from .law_in_space import slide_on_its_way
-from .solves import carried_by, solve, strayed
+from .solves import solve, strayed
 from .tangents import (
     ALONG_A,
     NOTHING,
@@ -37,6 +36,8 @@ from .tangents import (
     along,
     by_normal,
     direction_of,
+    held_along,
+    hold_along,
     left_of,
     of_tangents,
     over,
@@ -62,24 +63,18 @@ SINGULAR = 1e-12
 
 
 @inlined
-def is_second(codes: Array, i: int) -> bool:
-    """Return whether pair `i` is the second of a contact in space."""
-    return i < codes.size and codes[i] == at.SECOND_TANGENT
-
-
-@inlined
-def whole_compliance(faces: Array, i: int, runs: Runs) -> ComplianceInSpace:
-    """Return the compliance of a contact in space, rows of normal and tangents, for forces ``(N, -T1, -T2)``."""
-    n, t, b = 2 * i, 2 * i + 1, 2 * i + 3
+def whole_compliance(faces: Array, n: int, runs: Runs) -> ComplianceInSpace:
+    """Return the compliance of a contact in space for forces ``(N, -Ta, -Tb)``, from the row of its normal on."""
+    a, b = n + 1, n + 2
     return ComplianceInSpace(
         component(faces, n, COMPLIANCE + n, runs),
-        component(faces, n, COMPLIANCE + t, runs),
+        component(faces, n, COMPLIANCE + a, runs),
         component(faces, n, COMPLIANCE + b, runs),
-        component(faces, t, COMPLIANCE + n, runs),
-        component(faces, t, COMPLIANCE + t, runs),
-        component(faces, t, COMPLIANCE + b, runs),
+        component(faces, a, COMPLIANCE + n, runs),
+        component(faces, a, COMPLIANCE + a, runs),
+        component(faces, a, COMPLIANCE + b, runs),
         component(faces, b, COMPLIANCE + n, runs),
-        component(faces, b, COMPLIANCE + t, runs),
+        component(faces, b, COMPLIANCE + a, runs),
         component(faces, b, COMPLIANCE + b, runs),
     )
 
@@ -302,18 +297,34 @@ def searched(
 def carried_in_space(carried: Array, i: int, runs: Runs) -> BeforeInSpace:
     """Return what a contact in space carries, along both tangents; see `carried_by`.
 
-    Only bristles have a state along the second tangent.
+    Only bristles have a state along tangent b.
     """
-    first, second = carried_by(carried, i, runs), carried_by(carried, i + 1, runs)
+    base = i * at.CARRIED
     return BeforeInSpace(
-        first.status,
-        Tangents(first.slip, second.slip),
-        Tangents(first.earlier_slip, second.earlier_slip),
-        Tangents(first.state, second.state),
-        first.normal,
-        Tangents(first.tangential, second.tangential),
-        Tangents(first.past, second.past),
+        held(carried, base + at.STATUS, runs),
+        held_along(carried, base + at.LAST_SLIP, base + at.LAST_SLIP_B, runs),
+        held_along(carried, base + at.EARLIER_SLIP, base + at.EARLIER_SLIP_B, runs),
+        held_along(carried, base + at.FRICTION_STATE, base + at.FRICTION_STATE_B, runs),
+        held(carried, base + at.LAST_NORMAL, runs),
+        held_along(carried, base + at.LAST_TANGENTIAL, base + at.LAST_TANGENTIAL_B, runs),
+        held_along(carried, base + at.PAST_RATIO, base + at.PAST_RATIO_B, runs),
     )
+
+
+@inlined
+def strayed_in_space(carried: Array, i: int, runs: Runs) -> Tangents:
+    """Return the distance of contact `i` from the anchor of its stick, along both tangents."""
+    base = i * at.CARRIED
+    return Tangents(
+        strayed(carried, base, at.MATERIAL, at.ANCHOR, runs), strayed(carried, base, at.MATERIAL_B, at.ANCHOR_B, runs)
+    )
+
+
+@inlined
+def displaced_in_space(faces: Array, n: int, runs: Runs) -> tuple[Number, Tangents]:
+    """Return gap and slips of a contact under all forces, from the row of its normal on."""
+    gap = component(faces, n, DISPLACEMENT, runs)
+    return gap, Tangents(component(faces, n + 1, DISPLACEMENT, runs), component(faces, n + 2, DISPLACEMENT, runs))
 
 
 @inlined
@@ -321,25 +332,13 @@ def free_of_own(
     contacts: Contacts, carried: Array, i: int, normal: Number, pulled: Tangents, runs: Runs
 ) -> FreeInSpace:
     """Return the motion of contact `i` without its own forces."""
-    faces, w, (first, second) = contacts.faces, whole_compliance(contacts.faces, i, runs), pulled
-    gap = component(faces, 2 * i, DISPLACEMENT, runs) - (w.nn * normal - w.na * first - w.nb * second)
-    slip = component(faces, 2 * i + 1, DISPLACEMENT, runs) - (w.an * normal - w.aa * first - w.ab * second)
-    swerve = component(faces, 2 * i + 3, DISPLACEMENT, runs) - (w.bn * normal - w.ba * first - w.bb * second)
-    strays, slips = Tangents(strayed(carried, i, runs), strayed(carried, i + 1, runs)), Tangents(slip, swerve)
-    return FreeInSpace(gap, slips, strays, w, held(contacts.now, i * at.IN_STEP + at.LET_GO, runs), pulled)
-
-
-@inlined
-def put_second(contacts: Contacts, i: int, runs: Runs, goes_on: bool, second: Number) -> Number:
-    """Set the force along the second tangent of contact `i`; return its change."""
-    now, here, there = contacts.now, i * at.IN_STEP, (i + 1) * at.IN_STEP
-    was = held(now, there + at.TANGENTIAL_NOW, runs)
-    second = choose(goes_on, second, was)
-    hold(now, there + at.TANGENTIAL_NOW, runs, second)
-    # The pair without a normal repeats force and status of its contact, so that it is carried and shared likewise.
-    hold(now, there + at.NORMAL_NOW, runs, held(now, here + at.NORMAL_NOW, runs))
-    hold(now, there + at.STATUS_NOW, runs, held(now, here + at.STATUS_NOW, runs))
-    return second - was
+    n = contacts.rows[i]
+    w, (gap, slips) = whole_compliance(contacts.faces, n, runs), displaced_in_space(contacts.faces, n, runs)
+    gap -= w.nn * normal - w.na * pulled.a - w.nb * pulled.b
+    slip_a = slips.a - (w.an * normal - w.aa * pulled.a - w.ab * pulled.b)
+    slip_b = slips.b - (w.bn * normal - w.ba * pulled.a - w.bb * pulled.b)
+    let_go = held(contacts.now, i * at.IN_STEP + at.LET_GO, runs)
+    return FreeInSpace(gap, Tangents(slip_a, slip_b), strayed_in_space(carried, i, runs), w, let_go, pulled)
 
 
 @lanewise(NOTHING)
@@ -349,24 +348,15 @@ def direction(force: Tangents, last: Tangents) -> Tangents:
 
 
 @inlined
-def pair_of(array: Array, row: int, further: int, runs: Runs) -> Tangents:
-    """Return the numbers of a contact in space along both tangents."""
-    return Tangents(held(array, row, runs), held(array, row + further, runs))
-
-
-@inlined
-def free_in_space(contacts: Contacts, sizes: Sizes, runs: Runs) -> None:
-    """Set the displacements without the own forces of each contact in space, in place of those for one tangent."""
-    now, faces = contacts.now, contacts.faces
-    for i in range(sizes.contacts):
-        if is_second(contacts.codes, i + 1):
-            here = i * at.IN_STEP
-            w = whole_compliance(faces, i, runs)
-            normal = held(now, here + at.NORMAL_NOW, runs)
-            first, second = pair_of(now, here + at.TANGENTIAL_NOW, at.IN_STEP, runs)
-            gap, slip = held(now, here + at.NEW_GAP, runs), held(now, here + at.NEW_SLIP, runs)
-            swerve = held(now, here + at.IN_STEP + at.NEW_SLIP, runs)
-            hold(now, here + at.FREE_GAP, runs, gap - w.nn * normal + w.na * first + w.nb * second)
-            hold(now, here + at.FREE_SLIP, runs, slip - w.an * normal + w.aa * first + w.ab * second)
-            swerve = swerve - w.bn * normal + w.ba * first + w.bb * second
-            hold(now, here + at.IN_STEP + at.FREE_SLIP, runs, swerve)
+def free_in_space(i: int, contacts: Contacts, runs: Runs) -> None:
+    """Set gap and slips of contact `i` in space, and those that lack its own forces."""
+    now, n, here = contacts.now, contacts.rows[i], i * at.IN_STEP
+    w, (gap, slips) = whole_compliance(contacts.faces, n, runs), displaced_in_space(contacts.faces, n, runs)
+    normal = held(now, here + at.NORMAL_NOW, runs)
+    pulled = held_along(now, here + at.TANGENTIAL_NOW, here + at.TANGENTIAL_NOW_B, runs)
+    hold(now, here + at.NEW_GAP, runs, gap)
+    hold_along(now, here + at.NEW_SLIP, here + at.NEW_SLIP_B, runs, slips)
+    hold(now, here + at.FREE_GAP, runs, gap - w.nn * normal + w.na * pulled.a + w.nb * pulled.b)
+    free_a = slips.a - w.an * normal + w.aa * pulled.a + w.ab * pulled.b
+    free_b = slips.b - w.bn * normal + w.ba * pulled.a + w.bb * pulled.b
+    hold_along(now, here + at.FREE_SLIP, here + at.FREE_SLIP_B, runs, Tangents(free_a, free_b))

@@ -97,12 +97,17 @@ def carried_by(carried: Array, i: int, runs: Runs) -> Before:
 
 
 @inlined
-def strayed(carried: Array, i: int, runs: Runs) -> Number:
-    """Return the distance of contact `i` from the anchor of its stick."""
-    base = i * at.CARRIED
+def strayed(carried: Array, base: int, material: int, anchor: int, runs: Runs) -> Number:
+    """Return the distance of a contact from the anchor of its stick, along the tangent of these columns."""
     stuck = magnitude(held(carried, base + at.STATUS, runs) - STICKING) < 0.5
-    away = held(carried, base + at.MATERIAL, runs) - held(carried, base + at.ANCHOR, runs)
+    away = held(carried, base + material, runs) - held(carried, base + anchor, runs)
     return choose(stuck, away, runs.zero)
+
+
+@inlined
+def strayed_in_plane(carried: Array, i: int, runs: Runs) -> Number:
+    """Return the distance of contact `i` from the anchor of its stick."""
+    return strayed(carried, i * at.CARRIED, at.MATERIAL, at.ANCHOR, runs)
 
 
 @inlined

@@ -2,12 +2,31 @@
 
 import math
 
-from ..lanes.compiled import strict_pasted
-from ..lanes.operations import Number
+from ..lanes.compiled import inlined, strict_pasted
+from ..lanes.operations import Array, Number, Runs, choose, held, hold
 from ..layout.contact_values import ComplianceInSpace, Matrix, Tangents
 
 # The vector of length zero, and the direction of tangent a for vectors without one.
 NOTHING, ALONG_A = Tangents(0.0, 0.0), Tangents(1.0, 0.0)
+
+
+@inlined
+def held_along(array: Array, a: int, b: int, runs: Runs) -> Tangents:
+    """Return the vector whose components are in two rows of an array with one number for each run."""
+    return Tangents(held(array, a, runs), held(array, b, runs))
+
+
+@inlined
+def hold_along(array: Array, a: int, b: int, runs: Runs, vector: Tangents) -> None:
+    """Put the components of a vector into two rows of such an array."""
+    hold(array, a, runs, vector.a)
+    hold(array, b, runs, vector.b)
+
+
+@inlined
+def choose_along(condition: bool, yes: Tangents, no: Tangents) -> Tangents:
+    """Return `yes` where `condition` holds, `no` elsewhere."""
+    return Tangents(choose(condition, yes.a, no.a), choose(condition, yes.b, no.b))
 
 
 @strict_pasted

@@ -6,15 +6,16 @@ angle. Its slip is relative to the material under it, hence evaluated with the r
 
 import math
 
-from ..contact.in_space import is_second
 from ..lanes.compiled import inlined
-from ..lanes.operations import Array, Number, Pair, Runs, fused, held, hold, load, read, spread, store, total
+from ..lanes.operations import Array, Number, Runs, fused, held, hold, load, read, spread, store, total
 from ..layout import columns as at
+from ..layout.contact_values import Tangents
 from ..layout.parts import Parts
 from ..layout.rows import CONTACTS, POSITION, Q
 from ..modes.blocks import product, two_products
 from ..modes.turning import (
     ADVANCE,
+    ADVANCE_B,
     ADVANCED,
     BEGIN,
     EARLIER,
@@ -31,12 +32,12 @@ from ..modes.waves import sine_and_cosine_of_half_turns
 
 @inlined
 def set_rows_at(
-    rows: Array, at_start: Array, turns: Array, begin: int, end: int, i: int, angle: Number, runs: Runs
+    rows: Array, at_start: Array, turns: Array, begin: int, end: int, n: int, angle: Number, runs: Runs
 ) -> None:
-    """Set the rows of contact `i` and of its second tangent at an angle from its initial place (step 2)."""
+    """Set the rows of a contact, from that of its normal on, at an angle from its initial place (step 2)."""
     for k in range(begin, end, 2):
         s, c = sine_and_cosine_of_half_turns(load(turns, k, ORDER, runs) * (angle / math.pi))
-        for row in (2 * i, 2 * i + 1, 2 * i + 3):
+        for row in (n, n + 1, n + 2):
             first, second = load(at_start, k, row, runs), load(at_start, k + 1, row, runs)
             store(rows, k, CONTACTS + row, runs, fused(c, first, -s * second))
             store(rows, k + 1, CONTACTS + row, runs, fused(s, first, c * second))
@@ -52,36 +53,48 @@ def product_of(rows: Array, row: int, others: Array, other: int, begin: int, end
 
 
 @inlined
-def go_round(i: int, moved: Pair, parts: Parts, n: int, runs: Runs) -> Pair:
-    """Advance contact `i` along its circle (steps 2 and 3); return what its body adds to the gap there, and its slip.
+def go_round(i: int, places: Tangents, tracks: Tangents, parts: Parts, n: int, runs: Runs) -> tuple[Number, Tangents]:
+    """Advance contact `i` along its circle (steps 2 and 3); return what its body adds to the gap there, and its slips.
 
-    `moved` are its abscissa at the end of the step, and the advance of the surface along the circle by turning.
+    At the end of the step `places` are its abscissas, along the circle and along tangent b; `tracks` is the imposed
+    motion of the surface.
     """
-    place, track = moved
-    paths, contacts, turning, motion = parts.paths, parts.contacts, parts.turning, parts.imposed.motion
-    rows, turns, body = parts.modes.rows, turning.rows, paths.body_of[i]
+    paths, contacts, turning, carried = parts.paths, parts.contacts, parts.turning, parts.state.carried
+    rows, turns, body, normal = parts.modes.rows, turning.rows, paths.body_of[i], contacts.rows[i]
     begin, end = turning.spans[body, BEGIN], turning.spans[body, END]
-    if not is_second(contacts.codes, i):
-        base = i * at.CONTACT_CONSTANTS
-        phase = held(contacts.constants, base + at.ALONG_PHASE, runs)
-        angle = fused(held(contacts.constants, base + at.ALONG, runs), place, phase)
-        set_rows_at(rows, paths.at_start, turns, begin, end, i, angle, runs)
-    row, first = CONTACTS + 2 * i, begin
+    base = i * at.CONTACT_CONSTANTS
+    phase = held(contacts.constants, base + at.ALONG_PHASE, runs)
+    angle = fused(held(contacts.constants, base + at.ALONG, runs), places.a, phase)
+    set_rows_at(rows, paths.at_start, turns, begin, end, normal, angle, runs)
+    row, first = CONTACTS + normal, begin
     for s in range(paths.first_span[i], paths.first_span[i + 1]):
         if paths.spans[s, at.KIND] == at.ROUND:
             first = paths.spans[s, at.BEGIN]
     rise, slip = two_products(rows, row, POSITION, first, end, runs)
-    # The present place of the material that will be under the contact.
-    slip -= product(rows, row + 1, Q, first, begin, runs)
-    slip -= product_of(rows, row + 1, turns, PASSED, begin, end, runs)
-    before = read(
-        motion, n - 1 if n > 0 else 0, (i * at.MOTIONS + at.TRACK_MOTION) * runs.columns + runs.first, runs.zero
-    )
-    slip += (place - held(parts.state.carried, i * at.CARRIED + at.ABSCISSA, runs)) - (track - before)
+    slip = slip_round(rows, turns, row + 1, (first, begin, end), slip, runs)
+    slip_b = product(rows, row + 2, POSITION, first, end, runs)
+    slip_b = slip_round(rows, turns, row + 2, (first, begin, end), slip_b, runs)
+    column, before, own = i * at.MOTIONS * runs.columns + runs.first, n - 1 if n > 0 else 0, i * at.CARRIED
+    passed = tracks.a - read(parts.imposed.motion, before, column + at.TRACK_MOTION * runs.columns, runs.zero)
+    slip += (places.a - held(carried, own + at.ABSCISSA, runs)) - passed
+    passed = tracks.b - read(parts.imposed.motion, before, column + at.TRACK_MOTION_B * runs.columns, runs.zero)
+    slip_b += (places.b - held(carried, own + at.ABSCISSA_B, runs)) - passed
     here = i * OF_CONTACT
     hold(turning.contacts, here + RISE, runs, product_of(rows, row, turns, RISEN, begin, end, runs))
     hold(turning.contacts, here + ADVANCE, runs, product_of(rows, row + 1, turns, ADVANCED, begin, end, runs))
-    return rise, slip
+    hold(turning.contacts, here + ADVANCE_B, runs, product_of(rows, row + 2, turns, ADVANCED, begin, end, runs))
+    return rise, Tangents(slip, slip_b)
+
+
+@inlined
+def slip_round(rows: Array, turns: Array, row: int, blocks: tuple[int, int, int], slip: Number, runs: Runs) -> Number:
+    """Return the slip along a tangent by the modes, less the present place of the material that will be under it.
+
+    `blocks` are the first one of the modes without waves round the axis, that of the pairs, and the end.
+    """
+    first, begin, end = blocks
+    slip -= product(rows, row, Q, first, begin, runs)
+    return slip - product_of(rows, row, turns, PASSED, begin, end, runs)
 
 
 @inlined
@@ -94,7 +107,7 @@ def convected(i: int, place: Number, parts: Parts, runs: Runs) -> Number:
     rows, turns, row, body, value = (
         parts.modes.rows,
         turning.rows,
-        CONTACTS + 2 * i,
+        CONTACTS + contacts.rows[i],
         parts.paths.body_of[i],
         spread(0.0),
     )

@@ -5,15 +5,17 @@ slides, its tangential force is the last ratio times its normal force. Then cont
 overlap close, contacts held beyond their cone slide and contacts that slide against their friction are held: an active
 set. The system lies in blocks like the compliance, ``scratch[row, block, lane]``: a row for each unknown, with its
 displacements at all equations, a row for right sides, then those named below. Runs side by side share all equations.
+Nothing is compiled for contacts in space if `space` is None.
 """
 
 import math
 
 from ..contact.exact import SLIDING, STICKING
 from ..contact.friction import set_valued
-from ..contact.in_space import direction, is_second
+from ..contact.in_space import direction, displaced_in_space, strayed_in_space
 from ..contact.pressing import share_of
-from ..contact.solves import strayed
+from ..contact.solves import strayed_in_plane
+from ..contact.tangents import choose_along, held_along, hold_along, plus, scaled
 from ..contact.yielding import give_of, path_of, yields_anywhere, yields_of
 from ..lanes.compiled import inlined
 from ..lanes.operations import (
@@ -37,7 +39,7 @@ from ..lanes.operations import (
 from ..layout import columns as at
 from ..layout.contact_values import Tangents
 from ..layout.parts import Contacts, Sizes
-from ..layout.rows import COMPLIANCE, DISPLACEMENT
+from ..layout.rows import COMPLIANCE, DISPLACEMENT, has_b
 from .displacements import displace, displace_in_space
 
 # Rows of the scratch before its end: displacements to restore, multipliers of two unknowns, displacements under a
@@ -57,34 +59,30 @@ TOUCH = 1e-12
 
 
 @inlined
-def solve_states(contacts: Contacts, carried: Array, sizes: Sizes, step: Number, runs: Runs, tried: Number) -> Number:
+def solve_states(
+    space: bool | None, contacts: Contacts, carried: Array, sizes: Sizes, step: Number, runs: Runs, tried: Number
+) -> Number:
     """Solve for forces, states and displacements of all contacts, with the ratios of sliding kept, in runs `tried`.
 
     Nothing changes in runs where no consistent states are found; returns where that is so.
     """
-    now, codes, scratch = contacts.now, contacts.codes, contacts.scratch
-    keep_found(contacts, sizes, runs)
-    slack = TOUCH * farthest(now, sizes.contacts, runs)
+    now, scratch = contacts.now, contacts.scratch
+    keep_found(space, contacts, sizes, runs)
+    slack = TOUCH * farthest(space, now, sizes.contacts, runs)
     active, given_up = choose(tried > 0.5, 1.0, runs.zero), runs.zero
     fewest, vain = runs.zero + math.inf, runs.zero
     for _ in range(TRIALS):
-        size = number_equations(contacts, sizes.contacts, runs)
+        size = number_equations(space, contacts, sizes.contacts, runs)
         for j in range(sizes.contacts):
             if equation(now, j, at.NORMAL_EQUATION, runs) >= 0:
-                in_space = is_second(codes, j + 1)
-                put_columns(contacts, sizes, j, in_space, size, runs)
-                put_rights(contacts, carried, j, in_space, size, runs)
+                put_columns(space, contacts, sizes, j, size, runs)
+                put_rights(space, contacts, carried, j, size, runs)
         regular = eliminate(scratch, size, sizes.per_block, runs, active)
         for j in range(sizes.contacts):
             if equation(now, j, at.NORMAL_EQUATION, runs) >= 0:
-                more, pulled = take(contacts, j, j, size, regular, runs)
-                if is_second(codes, j + 1):
-                    _, swerved = take(contacts, j, j + 1, size, regular, runs)
-                    displace_in_space(contacts.faces, sizes.faces, j, runs, more, pulled, swerved)
-                else:
-                    displace(contacts.faces, sizes.faces, j, runs, more, pulled)
+                take(space, contacts, sizes, j, size, regular, runs)
         given_up = choose(active - regular > 0.5, 1.0, given_up)
-        at_odds, last, fails = compare(contacts, carried, sizes, slack, regular, runs)
+        at_odds, last, fails = compare(space, contacts, carried, sizes, slack, regular, runs)
         given_up = choose(fails > 0.5, 1.0, given_up)
         active = choose(given_up > 0.5, runs.zero, choose(at_odds > 0.5, regular, runs.zero))
         if not anywhere(active > 0.5):
@@ -93,16 +91,14 @@ def solve_states(contacts: Contacts, carried: Array, sizes: Sizes, step: Number,
         fewest = choose(at_odds < fewest, at_odds, fewest)
         for j in range(sizes.contacts):
             alone = choose(vain > BLOCKS_IN_VAIN, choose(magnitude(last - j) < 0.5, active, runs.zero), active)
-            if not is_second(codes, j):
-                in_space = is_second(codes, j + 1)
-                change(contacts, carried, sizes, j, in_space, step, alone, runs)
+            change(space, contacts, carried, sizes, j, step, alone, runs)
     given_up = choose(active > 0.5, 1.0, given_up)
-    put_back(contacts, sizes, given_up, runs)
+    put_back(space, contacts, sizes, given_up, runs)
     return given_up
 
 
 @inlined
-def farthest(now: Array, count: int, runs: Runs) -> Number:
+def farthest(space: bool | None, now: Array, count: int, runs: Runs) -> Number:
     """Return the largest gap or slip of all contacts without their forces."""
     found = runs.zero
     for i in range(count):
@@ -110,11 +106,14 @@ def farthest(now: Array, count: int, runs: Runs) -> Number:
         slip = magnitude(held(now, i * at.IN_STEP + at.FREE_SLIP, runs))
         found = choose(gap > found, gap, found)
         found = choose(slip > found, slip, found)
+        if space is not None:
+            slip = magnitude(held(now, i * at.IN_STEP + at.FREE_SLIP_B, runs))
+            found = choose(slip > found, slip, found)
     return found
 
 
 @inlined
-def keep_found(contacts: Contacts, sizes: Sizes, runs: Runs) -> None:
+def keep_found(space: bool | None, contacts: Contacts, sizes: Sizes, runs: Runs) -> None:
     """Save forces, states and displacements to restore, and set the ratios of sliding contacts."""
     now, saved = contacts.now, contacts.scratch.shape[0] + SAVED
     for i in range(sizes.contacts):
@@ -129,12 +128,17 @@ def keep_found(contacts: Contacts, sizes: Sizes, runs: Runs) -> None:
         hold(now, here + at.STATUS_KEPT, runs, status)
         ratio = choose(normal > 0.0, tangential, runs.zero) / choose(normal > 0.0, normal, 1.0)
         hold(now, here + at.RATIO, runs, ratio)
-        for k in range(2 * i, 2 * i + 2):
-            set_component(contacts.scratch, k, saved, runs, component(contacts.faces, k, DISPLACEMENT, runs))
+        if space is not None:
+            tangential = held(now, here + at.TANGENTIAL_NOW_B, runs)
+            hold(now, here + at.TANGENTIAL_KEPT_B, runs, tangential)
+            ratio = choose(normal > 0.0, tangential, runs.zero) / choose(normal > 0.0, normal, 1.0)
+            hold(now, here + at.RATIO_B, runs, ratio)
+    for k in range(sizes.rows):
+        set_component(contacts.scratch, k, saved, runs, component(contacts.faces, k, DISPLACEMENT, runs))
 
 
 @inlined
-def put_back(contacts: Contacts, sizes: Sizes, given_up: Number, runs: Runs) -> None:
+def put_back(space: bool | None, contacts: Contacts, sizes: Sizes, given_up: Number, runs: Runs) -> None:
     """Restore the saved values in runs that are given up."""
     if not anywhere(given_up > 0.5):
         return
@@ -148,14 +152,19 @@ def put_back(contacts: Contacts, sizes: Sizes, given_up: Number, runs: Runs) -> 
         ):
             found = held(now, here + row, runs)
             hold(now, here + row, runs, choose(given_up > 0.5, held(now, here + kept, runs), found))
-        for k in range(2 * i, 2 * i + 2):
-            found = component(contacts.faces, k, DISPLACEMENT, runs)
-            before = component(contacts.scratch, k, saved, runs)
-            set_component(contacts.faces, k, DISPLACEMENT, runs, choose(given_up > 0.5, before, found))
+        if space is not None:
+            found, kept_b = held(now, here + at.TANGENTIAL_NOW_B, runs), held(now, here + at.TANGENTIAL_KEPT_B, runs)
+            hold(now, here + at.TANGENTIAL_NOW_B, runs, choose(given_up > 0.5, kept_b, found))
+    for k in range(sizes.rows):
+        found = component(contacts.faces, k, DISPLACEMENT, runs)
+        before = component(contacts.scratch, k, saved, runs)
+        set_component(contacts.faces, k, DISPLACEMENT, runs, choose(given_up > 0.5, before, found))
 
 
 @inlined
-def compare(contacts: Contacts, carried: Array, sizes: Sizes, slack: Number, active: Number, runs: Runs) -> Numbers:
+def compare(
+    space: bool | None, contacts: Contacts, carried: Array, sizes: Sizes, slack: Number, active: Number, runs: Runs
+) -> Numbers:
     """Set the state that each contact wants, in runs that are `active`.
 
     Under laws other than Coulomb's, only a sweep decides when a contact breaks away or comes to rest.
@@ -169,28 +178,22 @@ def compare(contacts: Contacts, carried: Array, sizes: Sizes, slack: Number, act
     """
     now, at_odds, last, fails = contacts.now, runs.zero, runs.zero - 1.0, runs.zero
     for j in range(sizes.contacts):
-        if is_second(contacts.codes, j):
-            continue
-        here, in_space = j * at.IN_STEP, is_second(contacts.codes, j + 1)
+        here = j * at.IN_STEP
         status, normal = held(now, here + at.STATUS_NOW, runs), held(now, here + at.NORMAL_NOW, runs)
-        gap = component(contacts.faces, 2 * j, DISPLACEMENT, runs)
+        gap = component(contacts.faces, contacts.rows[j], DISPLACEMENT, runs)
         closed, sticks = status > 0.5 * STICKING, magnitude(status - STICKING) < 0.5
         wanted = choose(
             closed, choose(normal < 0.0, runs.zero, status), choose(gap < -slack, runs.zero + SLIDING, runs.zero)
         )
-        first, second = held(now, here + at.TANGENTIAL_NOW, runs), runs.zero
-        along, across = velocity_of(contacts, carried, j, runs), runs.zero
-        if in_space:
-            second = held(now, here + at.IN_STEP + at.TANGENTIAL_NOW, runs)
-            across = velocity_of(contacts, carried, j + 1, runs)
         if set_valued(contacts.codes[j]):
+            square, power = pulled_with(space, contacts, carried, j, runs)
             most = BEYOND * held(contacts.constants, j * at.CONTACT_CONSTANTS + at.AT_REST, runs) * normal
-            beyond = choose(sticks, first * first + second * second, runs.zero) > most * most
+            beyond = choose(sticks, square, runs.zero) > most * most
             breaks = choose(beyond, choose(normal < 0.0, runs.zero, 1.0), runs.zero)
             if contacts.codes[j] == at.COULOMB:
                 wanted = choose(breaks > 0.5, runs.zero + SLIDING, wanted)
                 free = held(now, here + at.LET_GO, runs) > 0.5
-                against = choose(free, runs.zero, first * along + second * across) < 0.0
+                against = choose(free, runs.zero, power) < 0.0
                 slides = choose(sticks, runs.zero, choose(normal < 0.0, runs.zero, 1.0))
                 wanted = choose(choose(against, slides, runs.zero) > 0.5, runs.zero + STICKING, wanted)
             else:
@@ -204,12 +207,42 @@ def compare(contacts: Contacts, carried: Array, sizes: Sizes, slack: Number, act
 
 
 @inlined
+def pulled_with(space: bool | None, contacts: Contacts, carried: Array, j: int, runs: Runs) -> Pair:
+    """Return the square of the tangential force of contact `j`, and its product with the velocity that it opposes."""
+    here = j * at.IN_STEP
+    if space is not None and has_b(contacts.rows, j):
+        pulled = held_along(contacts.now, here + at.TANGENTIAL_NOW, here + at.TANGENTIAL_NOW_B, runs)
+        velocity = velocity_in_space(contacts, carried, j, runs)
+        return pulled.a * pulled.a + pulled.b * pulled.b, pulled.a * velocity.a + pulled.b * velocity.b
+    pull = held(contacts.now, here + at.TANGENTIAL_NOW, runs)
+    return pull * pull, pull * (9.0 * component(contacts.faces, contacts.rows[j] + 1, DISPLACEMENT, runs))
+
+
+@inlined
+def velocity_in_space(contacts: Contacts, carried: Array, i: int, runs: Runs) -> Tangents:
+    """Return the velocity of contact `i` that friction opposes, in units of a ninth of a slip."""
+    base = i * at.CARRIED
+    _, slips = displaced_in_space(contacts.faces, contacts.rows[i], runs)
+    last = held_along(carried, base + at.LAST_SLIP, base + at.LAST_SLIP_B, runs)
+    earlier = held_along(carried, base + at.EARLIER_SLIP, base + at.EARLIER_SLIP_B, runs)
+    late = held(contacts.now, i * at.IN_STEP + at.LET_GO, runs) > 0.0
+    carried_on = choose_along(late, Tangents(runs.zero, runs.zero), plus(scaled(6.0, last), 1.0, earlier))
+    return plus(scaled(9.0, slips), 1.0, carried_on)
+
+
+@inlined
 def change(
-    contacts: Contacts, carried: Array, sizes: Sizes, j: int, in_space: bool, step: Number, active: Number, runs: Runs
+    space: bool | None,
+    contacts: Contacts,
+    carried: Array,
+    sizes: Sizes,
+    j: int,
+    step: Number,
+    active: Number,
+    runs: Runs,
 ) -> None:
     """Give contact `j` the state that it wants, in runs that are `active`."""
-    now, faces, here = contacts.now, contacts.faces, j * at.IN_STEP
-    there = here + at.IN_STEP
+    now, here = contacts.now, j * at.IN_STEP
     status, wanted = held(now, here + at.STATUS_NOW, runs), held(now, here + at.STATUS_WANTED, runs)
     wanted = choose(active > 0.5, wanted, status)
     if not anywhere(magnitude(wanted - status) > 0.5):
@@ -218,50 +251,69 @@ def change(
     closes = choose(status < 0.5 * STICKING, wanted, runs.zero) > 0.5 * STICKING
     moves = choose(status < SLIDING - 0.5, wanted, runs.zero) > SLIDING - 0.5
     stops = choose(wanted < SLIDING - 0.5, status, runs.zero) > SLIDING - 0.5
-    normal = held(now, here + at.NORMAL_NOW, runs)
-    first, second = held(now, here + at.TANGENTIAL_NOW, runs), runs.zero
-    # A contact that closes slides in the direction of its motion, one that breaks away in that of its force.
-    along, across = choose(closes, velocity_of(contacts, carried, j, runs), first), runs.zero
-    if in_space:
-        second = held(now, there + at.TANGENTIAL_NOW, runs)
-        across = choose(closes, velocity_of(contacts, carried, j + 1, runs), second)
-    at_rest = held(contacts.constants, j * at.CONTACT_CONSTANTS + at.AT_REST, runs)
-    c, s = direction(Tangents(along, across), Tangents(runs.zero, runs.zero))
-    ratio = choose(moves, at_rest * c, held(now, here + at.RATIO, runs))
-    hold(now, here + at.RATIO, runs, choose(stops, runs.zero, ratio))
     hold(now, here + at.STATUS_NOW, runs, wanted)
     hold(now, here + at.JAMMED_NOW, runs, choose(closes, runs.zero, held(now, here + at.JAMMED_NOW, runs)))
     hold(now, here + at.MAY_TOUCH, runs, choose(closes, 1.0, held(now, here + at.MAY_TOUCH, runs)))
     hold(now, here + at.BROKE, runs, choose(moves, 1.0, held(now, here + at.BROKE, runs)))
     soften_closed(contacts, carried, j, closes, step, runs)
-    left, pulled = choose(opens, runs.zero, normal), choose(opens, runs.zero, first)
-    hold(now, here + at.NORMAL_NOW, runs, left)
-    hold(now, here + at.TANGENTIAL_NOW, runs, pulled)
+    # A contact that closes slides in the direction of its motion, one that breaks away in that of its force.
+    in_space = False
+    if space is not None:
+        in_space = has_b(contacts.rows, j)
+        if in_space:
+            pulled = held_along(now, here + at.TANGENTIAL_NOW, here + at.TANGENTIAL_NOW_B, runs)
+            way = choose_along(closes, velocity_in_space(contacts, carried, j, runs), pulled)
+            way = direction(way, Tangents(runs.zero, runs.zero))
+            set_ratio(contacts, j, at.RATIO, moves, stops, way.a, runs)
+            set_ratio(contacts, j, at.RATIO_B, moves, stops, way.b, runs)
+            let_open_in_space(contacts, sizes, j, opens, runs)
     if not in_space:
-        displace(faces, sizes.faces, j, runs, left - normal, pulled - first)
-    else:
-        ratio = choose(moves, at_rest * s, held(now, there + at.RATIO, runs))
-        hold(now, there + at.RATIO, runs, choose(stops, runs.zero, ratio))
-        hold(now, there + at.STATUS_NOW, runs, wanted)
-        hold(now, there + at.NORMAL_NOW, runs, left)
-        swerved = choose(opens, runs.zero, second)
-        hold(now, there + at.TANGENTIAL_NOW, runs, swerved)
-        displace_in_space(faces, sizes.faces, j, runs, left - normal, pulled - first, swerved - second)
+        slip = component(contacts.faces, contacts.rows[j] + 1, DISPLACEMENT, runs)
+        along = choose(closes, 9.0 * slip, held(now, here + at.TANGENTIAL_NOW, runs))
+        set_ratio(contacts, j, at.RATIO, moves, stops, sense_of(along, runs), runs)
+        let_open(contacts, sizes, j, opens, runs)
 
 
 @inlined
-def velocity_of(contacts: Contacts, carried: Array, i: int, runs: Runs) -> Number:
-    """Return the velocity along the tangent of pair `i` that friction opposes, in units of a ninth of a slip."""
-    slip = component(contacts.faces, 2 * i + 1, DISPLACEMENT, runs)
-    if not (is_second(contacts.codes, i) or is_second(contacts.codes, i + 1)):
-        return 9.0 * slip
-    base, first = i * at.CARRIED, i - 1 if is_second(contacts.codes, i) else i
-    last, earlier = (
-        held(carried, base + at.LAST_SLIP, runs),
-        held(carried, base + at.EARLIER_SLIP, runs),
-    )
-    late = held(contacts.now, first * at.IN_STEP + at.LET_GO, runs) > 0.0
-    return 9.0 * slip + choose(late, runs.zero, 6.0 * last + earlier)
+def sense_of(along: Number, runs: Runs) -> Number:
+    """Return 1 or -1 with the sign of a force or a motion, 1 for none."""
+    return choose(along < 0.0, runs.zero - 1.0, 1.0)
+
+
+@inlined
+def set_ratio(
+    contacts: Contacts, j: int, column: int, moves: bool, stops: bool, component_of_way: Number, runs: Runs
+) -> None:
+    """Set the ratio along a tangent of contact `j`: that of its cone where it now moves, none where it stops."""
+    now, row = contacts.now, j * at.IN_STEP + column
+    at_rest = held(contacts.constants, j * at.CONTACT_CONSTANTS + at.AT_REST, runs)
+    ratio = choose(moves, at_rest * component_of_way, held(now, row, runs))
+    hold(now, row, runs, choose(stops, runs.zero, ratio))
+
+
+@inlined
+def let_open(contacts: Contacts, sizes: Sizes, j: int, opens: bool, runs: Runs) -> None:
+    """Take away the forces of contact `j` where it opens."""
+    now, here = contacts.now, j * at.IN_STEP
+    normal, pulled = held(now, here + at.NORMAL_NOW, runs), held(now, here + at.TANGENTIAL_NOW, runs)
+    pressed, left = choose(opens, runs.zero, normal), choose(opens, runs.zero, pulled)
+    hold(now, here + at.NORMAL_NOW, runs, pressed)
+    hold(now, here + at.TANGENTIAL_NOW, runs, left)
+    displace(contacts.faces, sizes.faces, contacts.rows[j], runs, pressed - normal, left - pulled)
+
+
+@inlined
+def let_open_in_space(contacts: Contacts, sizes: Sizes, j: int, opens: bool, runs: Runs) -> None:
+    """Do `let_open` for a contact in space."""
+    now, here = contacts.now, j * at.IN_STEP
+    normal = held(now, here + at.NORMAL_NOW, runs)
+    pulled = held_along(now, here + at.TANGENTIAL_NOW, here + at.TANGENTIAL_NOW_B, runs)
+    pressed = choose(opens, runs.zero, normal)
+    left = choose_along(opens, Tangents(runs.zero, runs.zero), pulled)
+    hold(now, here + at.NORMAL_NOW, runs, pressed)
+    hold_along(now, here + at.TANGENTIAL_NOW, here + at.TANGENTIAL_NOW_B, runs, left)
+    less = plus(left, -1.0, pulled)
+    displace_in_space(contacts.faces, sizes.faces, contacts.rows[j], runs, pressed - normal, less)
 
 
 @inlined
@@ -270,7 +322,7 @@ def soften_closed(contacts: Contacts, carried: Array, j: int, closes: bool, step
     yields = yields_of(j, contacts.constants, runs)
     if not yields_anywhere(yields):
         return
-    here, n = j * at.IN_STEP, 2 * j
+    here, n = j * at.IN_STEP, contacts.rows[j]
     own = component(contacts.faces, n, COMPLIANCE + n, runs)
     indented = -component(contacts.faces, n, DISPLACEMENT, runs)
     path = path_of(j, carried, runs)
@@ -288,29 +340,32 @@ def equation(now: Array, i: int, which: int, runs: Runs) -> int:
 
 
 @inlined
-def number_equations(contacts: Contacts, count: int, runs: Runs) -> int:
+def number_equations(space: bool | None, contacts: Contacts, count: int, runs: Runs) -> int:
     """Number the equations of all contacts, set their places and whether a run has each; return their number."""
-    now, codes, scratch = contacts.now, contacts.codes, contacts.scratch
-    size, has = 0, scratch.shape[0] + HAS
+    now, size = contacts.now, 0
     for i in range(count):
-        here = i * at.IN_STEP
-        of_normal, of_tangential = -1, -1
+        here, n = i * at.IN_STEP, contacts.rows[i]
         status = held(now, here + at.STATUS_NOW, runs)
-        closed, sticks = status > 0.5 * STICKING, magnitude(status - STICKING) < 0.5
-        mirrors = is_second(codes, i)
-        law = codes[i - 1] if mirrors else codes[i]
-        holds = choose(sticks, 1.0, runs.zero) if set_valued(law) else runs.zero
-        if not mirrors and anywhere(closed):
-            set_component(scratch, size, has, runs, choose(closed, 1.0, runs.zero))
-            contacts.places[size, runs.first] = 2 * i
-            of_normal, size = size, size + 1
-        if anywhere(holds > 0.5):
-            set_component(scratch, size, has, runs, holds)
-            contacts.places[size, runs.first] = 2 * i + 1
-            of_tangential, size = size, size + 1
-        hold(now, here + at.NORMAL_EQUATION, runs, runs.zero + float(of_normal))
-        hold(now, here + at.TANGENTIAL_EQUATION, runs, runs.zero + float(of_tangential))
+        closed, sticks = choose(status > 0.5 * STICKING, 1.0, runs.zero), magnitude(status - STICKING) < 0.5
+        holds = choose(sticks, 1.0, runs.zero) if set_valued(contacts.codes[i]) else runs.zero
+        size = number_equation(contacts, here + at.NORMAL_EQUATION, n, closed, size, runs)
+        size = number_equation(contacts, here + at.TANGENTIAL_EQUATION, n + 1, holds, size, runs)
         hold(now, here + at.RATIO, runs, choose(holds > 0.5, runs.zero, held(now, here + at.RATIO, runs)))
+        if space is not None and has_b(contacts.rows, i):
+            size = number_equation(contacts, here + at.TANGENTIAL_EQUATION_B, n + 2, holds, size, runs)
+            hold(now, here + at.RATIO_B, runs, choose(holds > 0.5, runs.zero, held(now, here + at.RATIO_B, runs)))
+    return size
+
+
+@inlined
+def number_equation(contacts: Contacts, row: int, place: int, has: Number, size: int, runs: Runs) -> int:
+    """Give an equation the number `size` if any run has it, and put that into a row; return the next number."""
+    number = -1
+    if anywhere(has > 0.5):
+        set_component(contacts.scratch, size, contacts.scratch.shape[0] + HAS, runs, has)
+        contacts.places[size, runs.first] = place
+        number, size = size, size + 1
+    hold(contacts.now, row, runs, runs.zero + float(number))
     return size
 
 
@@ -327,27 +382,26 @@ def is_held(now: Array, i: int, runs: Runs) -> bool:
 
 
 @inlined
-def put_columns(contacts: Contacts, sizes: Sizes, j: int, in_space: bool, size: int, runs: Runs) -> None:
+def put_columns(space: bool | None, contacts: Contacts, sizes: Sizes, j: int, size: int, runs: Runs) -> None:
     """Set the displacements under the forces of contact `j` at every equation."""
-    now, faces, scratch = contacts.now, contacts.faces, contacts.scratch
-    ratio, swerve = held(now, j * at.IN_STEP + at.RATIO, runs), runs.zero
-    if in_space:
-        swerve = held(now, (j + 1) * at.IN_STEP + at.RATIO, runs)
-    n, t, b = COMPLIANCE + 2 * j, COMPLIANCE + 2 * j + 1, COMPLIANCE + 2 * j + 3
-    together = scratch.shape[0] + ALONG
+    now, faces, scratch, here = contacts.now, contacts.faces, contacts.scratch, j * at.IN_STEP
+    ratio, n, together = held(now, here + at.RATIO, runs), COMPLIANCE + contacts.rows[j], scratch.shape[0] + ALONG
     for block in range(sizes.faces):
-        along = fused(-ratio, load(faces, t, block, runs), load(faces, n, block, runs))
-        along = fused(-swerve, load(faces, b, block, runs), along) if in_space else along
+        along = fused(-ratio, load(faces, n + 1, block, runs), load(faces, n, block, runs))
         store(scratch, together, block, runs, along)
-    column = equation(now, j, at.NORMAL_EQUATION, runs)
-    give = held(now, j * at.IN_STEP + at.GIVE, runs)
-    put_column(scratch, contacts.places, scratch, together, column, give, size, runs)
-    first = equation(now, j, at.TANGENTIAL_EQUATION, runs)
-    if first >= 0:
-        put_column(scratch, contacts.places, faces, t, first, runs.zero, size, runs)
-    second = equation(now, j + 1, at.TANGENTIAL_EQUATION, runs) if in_space else -1
-    if second >= 0:
-        put_column(scratch, contacts.places, faces, b, second, runs.zero, size, runs)
+    of_tangential = equation(now, j, at.TANGENTIAL_EQUATION, runs)
+    if of_tangential >= 0:
+        put_column(scratch, contacts.places, faces, n + 1, of_tangential, runs.zero, size, runs)
+    if space is not None and has_b(contacts.rows, j):
+        ratio = held(now, here + at.RATIO_B, runs)
+        for block in range(sizes.faces):
+            along = fused(-ratio, load(faces, n + 2, block, runs), load(scratch, together, block, runs))
+            store(scratch, together, block, runs, along)
+        of_tangential = equation(now, j, at.TANGENTIAL_EQUATION_B, runs)
+        if of_tangential >= 0:
+            put_column(scratch, contacts.places, faces, n + 2, of_tangential, runs.zero, size, runs)
+    of_normal, give = equation(now, j, at.NORMAL_EQUATION, runs), held(now, here + at.GIVE, runs)
+    put_column(scratch, contacts.places, scratch, together, of_normal, give, size, runs)
 
 
 @inlined
@@ -367,43 +421,62 @@ def put_column(
 
 
 @inlined
-def put_rights(contacts: Contacts, carried: Array, j: int, in_space: bool, size: int, runs: Runs) -> None:
+def put_rights(space: bool | None, contacts: Contacts, carried: Array, j: int, size: int, runs: Runs) -> None:
     """Set the right sides of contact `j`: gap and slip to undo."""
-    now, scratch, here = contacts.now, contacts.scratch, j * at.IN_STEP
+    now, here = contacts.now, j * at.IN_STEP
     gap, beyond = held(now, here + at.FREE_GAP, runs), held(now, here + at.BEYOND, runs)
-    of_normal = equation(now, j, at.NORMAL_EQUATION, runs)
-    set_component(scratch, of_normal, size, runs, choose(is_closed(now, j, runs), -gap - beyond, runs.zero))
-    for i in range(j, j + 2 if in_space else j + 1):
-        of_tangential = equation(now, i, at.TANGENTIAL_EQUATION, runs)
-        if of_tangential >= 0:
-            slip = held(now, i * at.IN_STEP + at.FREE_SLIP, runs) + strayed(carried, i, runs)
-            holds = is_held(now, i, runs)
-            set_component(scratch, of_tangential, size, runs, choose(holds, -slip, runs.zero))
+    put_right(contacts, j, at.NORMAL_EQUATION, is_closed(now, j, runs), gap + beyond, size, runs)
+    if space is not None and has_b(contacts.rows, j):
+        free = held_along(now, here + at.FREE_SLIP, here + at.FREE_SLIP_B, runs)
+        slips = plus(free, 1.0, strayed_in_space(carried, j, runs))
+        put_right(contacts, j, at.TANGENTIAL_EQUATION, is_held(now, j, runs), slips.a, size, runs)
+        put_right(contacts, j, at.TANGENTIAL_EQUATION_B, is_held(now, j, runs), slips.b, size, runs)
+    else:
+        slip = held(now, here + at.FREE_SLIP, runs) + strayed_in_plane(carried, j, runs)
+        put_right(contacts, j, at.TANGENTIAL_EQUATION, is_held(now, j, runs), slip, size, runs)
 
 
 @inlined
-def found_forces(contacts: Contacts, j: int, i: int, size: int, runs: Runs) -> Pair:
-    """Return the normal force of contact `j` and the tangential force of its pair `i` from the solution."""
-    now, scratch = contacts.now, contacts.scratch
-    normal = component(scratch, equation(now, j, at.NORMAL_EQUATION, runs), size, runs)
-    tangential = held(now, i * at.IN_STEP + at.RATIO, runs) * normal
-    of_tangential = equation(now, i, at.TANGENTIAL_EQUATION, runs)
-    if of_tangential >= 0:
-        pulled = -component(scratch, of_tangential, size, runs)
-        tangential = choose(is_held(now, i, runs), pulled, tangential)
-    return normal, tangential
+def put_right(contacts: Contacts, j: int, which: int, has: bool, undone: Number, size: int, runs: Runs) -> None:
+    """Set the right side of an equation of contact `j`, if there is one, to undo a displacement where a run has it."""
+    number = equation(contacts.now, j, which, runs)
+    if number >= 0:
+        set_component(contacts.scratch, number, size, runs, choose(has, -undone, runs.zero))
 
 
 @inlined
-def take(contacts: Contacts, j: int, i: int, size: int, regular: Number, runs: Runs) -> Pair:
-    """Accept the forces of pair `i` of contact `j` in runs that are `regular`; return their changes."""
-    now, here = contacts.now, i * at.IN_STEP
-    normal, tangential = held(now, here + at.NORMAL_NOW, runs), held(now, here + at.TANGENTIAL_NOW, runs)
-    pressed, pulled = found_forces(contacts, j, i, size, runs)
-    pressed, pulled = choose(regular > 0.5, pressed, normal), choose(regular > 0.5, pulled, tangential)
+def found_tangential(
+    contacts: Contacts, j: int, which: int, ratio: Number, normal: Number, size: int, runs: Runs
+) -> Number:
+    """Return the force of contact `j` along a tangent: from its equation where it is held, else by its ratio."""
+    tangential, number = ratio * normal, equation(contacts.now, j, which, runs)
+    if number >= 0:
+        pulled = -component(contacts.scratch, number, size, runs)
+        tangential = choose(is_held(contacts.now, j, runs), pulled, tangential)
+    return tangential
+
+
+@inlined
+def take(space: bool | None, contacts: Contacts, sizes: Sizes, j: int, size: int, regular: Number, runs: Runs) -> None:
+    """Accept the forces of contact `j` with their displacements, in runs that are `regular`."""
+    now, here, n = contacts.now, j * at.IN_STEP, contacts.rows[j]
+    normal = held(now, here + at.NORMAL_NOW, runs)
+    found = component(contacts.scratch, equation(now, j, at.NORMAL_EQUATION, runs), size, runs)
+    pressed = choose(regular > 0.5, found, normal)
     hold(now, here + at.NORMAL_NOW, runs, pressed)
+    was, ratio = held(now, here + at.TANGENTIAL_NOW, runs), held(now, here + at.RATIO, runs)
+    pulled = found_tangential(contacts, j, at.TANGENTIAL_EQUATION, ratio, found, size, runs)
+    pulled = choose(regular > 0.5, pulled, was)
     hold(now, here + at.TANGENTIAL_NOW, runs, pulled)
-    return pressed - normal, pulled - tangential
+    if space is not None and has_b(contacts.rows, j):
+        was_b, ratio = held(now, here + at.TANGENTIAL_NOW_B, runs), held(now, here + at.RATIO_B, runs)
+        pulled_b = found_tangential(contacts, j, at.TANGENTIAL_EQUATION_B, ratio, found, size, runs)
+        pulled_b = choose(regular > 0.5, pulled_b, was_b)
+        hold(now, here + at.TANGENTIAL_NOW_B, runs, pulled_b)
+        more = Tangents(pulled - was, pulled_b - was_b)
+        displace_in_space(contacts.faces, sizes.faces, n, runs, pressed - normal, more)
+    else:
+        displace(contacts.faces, sizes.faces, n, runs, pressed - normal, pulled - was)
 
 
 @inlined

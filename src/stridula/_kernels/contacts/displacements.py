@@ -7,14 +7,15 @@ without forces plus the compliance times the forces.
 from ..lanes.compiled import inlined
 from ..lanes.operations import Array, Number, Runs, component, fused, held, load, set_component, store
 from ..layout import columns as at
-from ..layout.contact_values import Compliance
-from ..layout.rows import COMPLIANCE, DISPLACEMENT
+from ..layout.contact_values import Compliance, Tangents
+from ..layout.parts import Contacts
+from ..layout.rows import COMPLIANCE, DISPLACEMENT, has_b
 
 
 @inlined
-def own_compliance(faces: Array, i: int, runs: Runs) -> Compliance:
-    """Return the compliance of contact `i` for its own forces, row by row."""
-    n, t = 2 * i, 2 * i + 1
+def own_compliance(faces: Array, n: int, runs: Runs) -> Compliance:
+    """Return the compliance of a contact for its own forces, row by row from that of its normal on."""
+    t = n + 1
     return Compliance(
         component(faces, n, COMPLIANCE + n, runs),
         component(faces, n, COMPLIANCE + t, runs),
@@ -24,29 +25,31 @@ def own_compliance(faces: Array, i: int, runs: Runs) -> Compliance:
 
 
 @inlined
-def displace(faces: Array, blocks: int, i: int, runs: Runs, normal: Number, tangential: Number) -> None:
-    """Add the displacements due to changes of the forces of contact `i`."""
+def displace(faces: Array, blocks: int, n: int, runs: Runs, normal: Number, tangential: Number) -> None:
+    """Add the displacements due to changes of the forces of a contact, by the row of its normal."""
     for k in range(blocks):
-        moved = fused(load(faces, COMPLIANCE + 2 * i, k, runs), normal, load(faces, DISPLACEMENT, k, runs))
-        moved = fused(-load(faces, COMPLIANCE + 2 * i + 1, k, runs), tangential, moved)
+        moved = fused(load(faces, COMPLIANCE + n, k, runs), normal, load(faces, DISPLACEMENT, k, runs))
+        moved = fused(-load(faces, COMPLIANCE + n + 1, k, runs), tangential, moved)
         store(faces, DISPLACEMENT, k, runs, moved)
 
 
 @inlined
-def displace_in_space(
-    faces: Array, blocks: int, i: int, runs: Runs, normal: Number, first: Number, second: Number
-) -> None:
-    """Add the displacements due to changes of the forces of contact `i` in space, which has no second normal."""
+def displace_in_space(faces: Array, blocks: int, n: int, runs: Runs, normal: Number, pulled: Tangents) -> None:
+    """Add the displacements due to changes of the forces of a contact in space."""
     for k in range(blocks):
-        moved = fused(load(faces, COMPLIANCE + 2 * i, k, runs), normal, load(faces, DISPLACEMENT, k, runs))
-        moved = fused(-load(faces, COMPLIANCE + 2 * i + 1, k, runs), first, moved)
-        moved = fused(-load(faces, COMPLIANCE + 2 * i + 3, k, runs), second, moved)
+        moved = fused(load(faces, COMPLIANCE + n, k, runs), normal, load(faces, DISPLACEMENT, k, runs))
+        moved = fused(-load(faces, COMPLIANCE + n + 1, k, runs), pulled.a, moved)
+        moved = fused(-load(faces, COMPLIANCE + n + 2, k, runs), pulled.b, moved)
         store(faces, DISPLACEMENT, k, runs, moved)
 
 
 @inlined
-def displace_freely(faces: Array, now: Array, count: int, runs: Runs) -> None:
+def displace_freely(space: bool | None, contacts: Contacts, count: int, runs: Runs) -> None:
     """Set the displacements without any force."""
+    faces, now = contacts.faces, contacts.now
     for i in range(count):
-        set_component(faces, 2 * i, DISPLACEMENT, runs, held(now, i * at.IN_STEP + at.FREE_GAP, runs))
-        set_component(faces, 2 * i + 1, DISPLACEMENT, runs, held(now, i * at.IN_STEP + at.FREE_SLIP, runs))
+        n, here = contacts.rows[i], i * at.IN_STEP
+        set_component(faces, n, DISPLACEMENT, runs, held(now, here + at.FREE_GAP, runs))
+        set_component(faces, n + 1, DISPLACEMENT, runs, held(now, here + at.FREE_SLIP, runs))
+        if space is not None and has_b(contacts.rows, i):
+            set_component(faces, n + 2, DISPLACEMENT, runs, held(now, here + at.FREE_SLIP_B, runs))

@@ -1,21 +1,23 @@
 """Step 5 for any number of contacts: block Gauss-Seidel over the exact solution of one, from the last forces.
 
-Numbers of contact `i` of a run lie in rows ``i * count + kind``.
+Numbers of contact `i` of a run lie in rows ``i * count + kind``. Nothing is compiled for contacts in space
+if `space` is None.
 """
 
 import math
 from typing import NamedTuple
 
 from ..contact.exact import SLIDING, STICKING
-from ..contact.in_space import carried_in_space, free_of_own, is_second, pair_of, put_second
-from ..contact.solves import carried_by, strayed
+from ..contact.in_space import carried_in_space, free_of_own
+from ..contact.solves import carried_by, strayed_in_plane
+from ..contact.tangents import choose_along, held_along
 from ..contact.yielding import comes_close, solve_and_keep
 from ..lanes.compiled import entry, inlined, pasted
 from ..lanes.operations import Array, Number, Pair, Runs, anywhere, choose, component, everywhere, held, hold, magnitude
 from ..layout import columns as at
-from ..layout.contact_values import Free, Touch, TouchInSpace
+from ..layout.contact_values import Free, Tangents, Touch, TouchInSpace
 from ..layout.parts import Contacts, Sizes, Timing
-from ..layout.rows import COMPLIANCE, DISPLACEMENT
+from ..layout.rows import COMPLIANCE, DISPLACEMENT, has_b
 from .direct import solve_states
 from .displacements import displace, displace_freely, displace_in_space, own_compliance
 
@@ -37,17 +39,19 @@ ROUNDING = 1e-15
 
 @inlined
 def is_alone(sizes: Sizes) -> bool:
-    """Return whether there is one contact, which in space has two pairs of rows."""
-    return sizes.contacts == (2 if sizes.space else 1)
+    """Return whether there is one contact."""
+    return sizes.contacts == 1
 
 
 @inlined
-def start_from_last(contacts: Contacts, carried: Array, touching: Number, sizes: Sizes, runs: Runs) -> None:
+def start_from_last(
+    space: bool | None, contacts: Contacts, carried: Array, touching: Number, sizes: Sizes, runs: Runs
+) -> None:
     """Start contacts that were closed from the forces of the last step, in runs with any contact touching."""
     faces, now = contacts.faces, contacts.now
     # A single contact needs no start: it is solved at once.
     warm = runs.zero if is_alone(sizes) else choose(touching > 0.5, 1.0, runs.zero)
-    displace_freely(faces, now, sizes.contacts, runs)
+    displace_freely(space, contacts, sizes.contacts, runs)
     for i in range(sizes.contacts):
         here, base = i * at.IN_STEP, i * at.CARRIED
         was_closed = warm * held(carried, base + at.STATUS, runs) > 0.5 * STICKING
@@ -64,8 +68,17 @@ def start_from_last(contacts: Contacts, carried: Array, touching: Number, sizes:
         hold(now, here + at.BEYOND, runs, runs.zero)
         hold(now, here + at.BROKE, runs, runs.zero)
         hold(now, here + at.LET_GO, runs, runs.zero)
-        if anywhere(normal > 0.0):
-            displace(faces, sizes.faces, i, runs, normal, tangential)
+        in_space = False
+        if space is not None:
+            in_space = has_b(contacts.rows, i)
+            if in_space:
+                last = held_along(carried, base + at.LAST_TANGENTIAL, base + at.LAST_TANGENTIAL_B, runs)
+                pulled = choose_along(was_closed, last, Tangents(runs.zero, runs.zero))
+                hold(now, here + at.TANGENTIAL_NOW_B, runs, pulled.b)
+                if anywhere(normal > 0.0):
+                    displace_in_space(faces, sizes.faces, contacts.rows[i], runs, normal, pulled)
+        if not in_space and anywhere(normal > 0.0):
+            displace(faces, sizes.faces, contacts.rows[i], runs, normal, tangential)
 
 
 class Sweep(NamedTuple):
@@ -91,11 +104,12 @@ class Sweep(NamedTuple):
 @pasted
 def touch_in_plane(i: int, contacts: Contacts, carried: Array, step: Number, runs: Runs) -> Touch:
     """Solve contact `i` of the plane without its own forces."""
-    now, here, w = contacts.now, i * at.IN_STEP, own_compliance(contacts.faces, i, runs)
+    now, here, n = contacts.now, i * at.IN_STEP, contacts.rows[i]
+    w = own_compliance(contacts.faces, n, runs)
     normal, tangential = held(now, here + at.NORMAL_NOW, runs), held(now, here + at.TANGENTIAL_NOW, runs)
-    gap = component(contacts.faces, 2 * i, DISPLACEMENT, runs) - (w.nn * normal - w.nt * tangential)
-    slip = component(contacts.faces, 2 * i + 1, DISPLACEMENT, runs) - (w.tn * normal - w.tt * tangential)
-    free = Free(gap, slip, strayed(carried, i, runs), w, held(now, here + at.LET_GO, runs))
+    gap = component(contacts.faces, n, DISPLACEMENT, runs) - (w.nn * normal - w.nt * tangential)
+    slip = component(contacts.faces, n + 1, DISPLACEMENT, runs) - (w.tn * normal - w.tt * tangential)
+    free = Free(gap, slip, strayed_in_plane(carried, i, runs), w, held(now, here + at.LET_GO, runs))
     return solve_and_keep(i, free, carried_by(carried, i, runs), contacts, carried, step, runs)
 
 
@@ -103,7 +117,8 @@ def touch_in_plane(i: int, contacts: Contacts, carried: Array, step: Number, run
 def touch_in_space(i: int, contacts: Contacts, carried: Array, step: Number, runs: Runs) -> TouchInSpace:
     """Solve contact `i` of space without its own forces."""
     now, here = contacts.now, i * at.IN_STEP
-    normal, pulled = held(now, here + at.NORMAL_NOW, runs), pair_of(now, here + at.TANGENTIAL_NOW, at.IN_STEP, runs)
+    normal = held(now, here + at.NORMAL_NOW, runs)
+    pulled = held_along(now, here + at.TANGENTIAL_NOW, here + at.TANGENTIAL_NOW_B, runs)
     free, before = free_of_own(contacts, carried, i, normal, pulled, runs), carried_in_space(carried, i, runs)
     return solve_and_keep(i, free, before, contacts, carried, step, runs)
 
@@ -124,41 +139,47 @@ def put_touch(i: int, touch: Touch, done: Number, contacts: Contacts, runs: Runs
     return normal - was_normal, tangential - was_tangential, status - was
 
 
+@inlined
+def put_touch_in_space(
+    i: int, touch: TouchInSpace, done: Number, contacts: Contacts, runs: Runs
+) -> tuple[Number, Tangents, Number]:
+    """Do `put_touch` for a contact in space."""
+    now, b = contacts.now, i * at.IN_STEP + at.TANGENTIAL_NOW_B
+    was = held(now, b, runs)
+    along_a = Touch(touch.normal, touch.tangential.a, touch.status, touch.jammed)
+    more, pulled, turned = put_touch(i, along_a, done, contacts, runs)
+    hold(now, b, runs, choose(done < 0.5, touch.tangential.b, was))
+    return more, Tangents(pulled, held(now, b, runs) - was), turned
+
+
 @pasted
 def sweep_once(
     space: bool | None, contacts: Contacts, carried: Array, sizes: Sizes, step: Number, done: Number, runs: Runs
 ) -> Sweep:
-    """Solve contacts that may touch in turn, in runs not `done`.
-
-    Nothing is compiled for contacts with two tangents if `space` is None.
-    """
+    """Solve contacts that may touch in turn, in runs not `done`."""
     faces, now = contacts.faces, contacts.now
     change, largest, misfit, reach, settled = runs.zero, runs.zero, runs.zero, runs.zero, runs.zero + 1.0
     for i in range(sizes.contacts):
-        here = i * at.IN_STEP
-        if is_second(contacts.codes, i):
-            continue
+        here, n = i * at.IN_STEP, contacts.rows[i]
         may_touch = held(now, here + at.MAY_TOUCH, runs)
-        may_touch = choose(component(faces, 2 * i, DISPLACEMENT, runs) < 0.0, 1.0, may_touch)
+        may_touch = choose(component(faces, n, DISPLACEMENT, runs) < 0.0, 1.0, may_touch)
         if not anywhere(may_touch > 0.5):
             continue
         hold(now, here + at.MAY_TOUCH, runs, may_touch)
-        w, more, pulled, turned = own_compliance(faces, i, runs), runs.zero, runs.zero, runs.zero
+        w, more, pulled, turned = own_compliance(faces, n, runs), runs.zero, runs.zero, runs.zero
         in_space = False
         if space is not None:
-            in_space = is_second(contacts.codes, i + 1)
+            in_space = has_b(contacts.rows, i)
             if in_space:
-                normal, pulls, status, jammed = touch_in_space(i, contacts, carried, step, runs)
-                more, pulled, turned = put_touch(i, Touch(normal, pulls.a, status, jammed), done, contacts, runs)
-                swerved = put_second(contacts, i, runs, done < 0.5, pulls.b)
-                displace_in_space(faces, sizes.faces, i, runs, more, pulled, swerved)
-                change = largest_of(change, magnitude(swerved))
-                across = component(faces, 2 * i + 3, COMPLIANCE + 2 * i + 3, runs)
-                misfit = largest_of(misfit, magnitude(across * swerved))
+                pressed = touch_in_space(i, contacts, carried, step, runs)
+                more, changed, turned = put_touch_in_space(i, pressed, done, contacts, runs)
+                displace_in_space(faces, sizes.faces, n, runs, more, changed)
+                change, pulled = largest_of(change, magnitude(changed.b)), changed.a
+                misfit = largest_of(misfit, slipped_along_b(faces, n, changed.b, runs))
         if not in_space:
             touch = touch_in_plane(i, contacts, carried, step, runs)
             more, pulled, turned = put_touch(i, touch, done, contacts, runs)
-            displace(faces, sizes.faces, i, runs, more, pulled)
+            displace(faces, sizes.faces, n, runs, more, pulled)
         settled = choose(magnitude(turned) > 0.5, runs.zero, settled)
         normal, tangential = held(now, here + at.NORMAL_NOW, runs), held(now, here + at.TANGENTIAL_NOW, runs)
         change = largest_of(change, largest_of(magnitude(more), magnitude(pulled)))
@@ -170,11 +191,19 @@ def sweep_once(
 
 
 @inlined
-def rounding_of_slips(carried: Array, sizes: Sizes, runs: Runs) -> Number:
+def slipped_along_b(faces: Array, n: int, changed: Number, runs: Runs) -> Number:
+    """Return the slip along tangent b that a change of the force along it undoes."""
+    return magnitude(component(faces, n + 2, COMPLIANCE + n + 2, runs) * changed)
+
+
+@inlined
+def rounding_of_slips(space: bool | None, carried: Array, sizes: Sizes, runs: Runs) -> Number:
     """Return the rounding error of slips, which are differences of abscissas."""
     farthest = runs.zero
     for i in range(sizes.contacts):
         farthest = largest_of(farthest, magnitude(held(carried, i * at.CARRIED + at.MATERIAL, runs)))
+        if space is not None:
+            farthest = largest_of(farthest, magnitude(held(carried, i * at.CARRIED + at.MATERIAL_B, runs)))
     return ROUNDING * farthest
 
 
@@ -195,11 +224,11 @@ def solve_closed(
     state in which it could be held again: it is then let go. Results do not depend on the runs side by side: a run that
     is done does not change. Compiled once for the march and for the start.
     """
-    start_from_last(contacts, carried, touching, sizes, runs)
+    start_from_last(space, contacts, carried, touching, sizes, runs)
     if not anywhere(touching > 0.5):
         return runs.zero, runs.zero
     done = choose(touching > 0.5, runs.zero, 1.0)
-    rounding = rounding_of_slips(carried, sizes, runs)
+    rounding = rounding_of_slips(space, carried, sizes, runs)
     made, error, before = runs.zero, choose(touching > 0.5, math.inf, runs.zero), runs.zero + math.inf
     given_up = runs.zero
     for sweep in range(timing.sweeps):
@@ -231,7 +260,7 @@ def solve_closed(
             changeable = choose(given_up > 0.5, settled, runs.zero + 1.0) if early else settled
             tried = choose(done < 0.5, changeable, runs.zero)
             if anywhere(tried > 0.5):
-                given_up = solve_states(contacts, carried, sizes, timing.step, runs, tried)
+                given_up = solve_states(space, contacts, carried, sizes, timing.step, runs, tried)
                 again = sizes.space and sweep > 0 and early
                 before = choose(tried > 0.5, change if again else runs.zero + math.inf, before)
         if sweep + 1 == PATIENCE:

@@ -22,9 +22,11 @@ SPAN = 5
 # contact moves round.
 CONSTANT, PATH_NORMAL, PATH_TANGENTIAL, ROUND = range(4)
 
+# Names that end in _B are those of tangent b, which only contacts in space have. Their columns are unused in the plane.
+
 # Motion imposed on a contact: of the tip and of the track along the tangent, of the gap.
-TIP_MOTION, TRACK_MOTION, GAP_MOTION = range(3)
-MOTIONS = 3
+TIP_MOTION, TRACK_MOTION, GAP_MOTION, TIP_MOTION_B, TRACK_MOTION_B = range(5)
+MOTIONS = 5
 
 # Constants of a contact: initial place, gap, ends of its path; rate along the path and value at abscissa zero of the
 # two angles whose sines are the modes of the path, on a circle of the angle from the initial place; ratio at rest of
@@ -50,8 +52,6 @@ CONTACT_CONSTANTS = 14
 
 # Laws of friction.
 COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, LUGRE, AGING, SLIP = range(7)
-# In place of the law: the pair of rows is the second of the contact before it.
-SECOND_TANGENT = -1
 
 # Scalars that each contact carries from step to step: material abscissa of the tip, anchor of the stick, last status,
 # tip's abscissa at the last two steps, last slip and the one before, internal state of the law, forces and gap of the
@@ -75,8 +75,16 @@ SECOND_TANGENT = -1
     PAST_RATIO,
     STUCK_SHARE,
     EARLIEST_GAP,
-) = range(16)
-CARRIED = 16
+    MATERIAL_B,
+    ANCHOR_B,
+    ABSCISSA_B,
+    LAST_SLIP_B,
+    EARLIER_SLIP_B,
+    FRICTION_STATE_B,
+    LAST_TANGENTIAL_B,
+    PAST_RATIO_B,
+) = range(24)
+CARRIED = 24
 
 # State of a contact in a step: gap, slip and abscissa, without its forces, then with them; forces, status, whether it
 # jams; while the contacts are solved together whether it may touch, has broken away, has been let go. Additional give
@@ -105,8 +113,14 @@ CARRIED = 16
     TANGENTIAL_KEPT,
     STATUS_KEPT,
     STATUS_WANTED,
-) = range(21)
-IN_STEP = 21
+    FREE_SLIP_B,
+    NEW_SLIP_B,
+    TANGENTIAL_NOW_B,
+    TANGENTIAL_EQUATION_B,
+    RATIO_B,
+    TANGENTIAL_KEPT_B,
+) = range(27)
+IN_STEP = 27
 
 # Sums of each contact over the steps of a sample, and its place at the beginning of the sample.
 (
@@ -119,8 +133,10 @@ IN_STEP = 21
     STUCK_STEPS,
     SLID_STEPS,
     FIRST_MATERIAL,
-) = range(9)
-SUMS = 9
+    TANGENTIALS_B,
+    FIRST_MATERIAL_B,
+) = range(11)
+SUMS = 11
 
 # Columns of the energy record, one row a sample; all but the stored energy are carried from step to step.
 STORED, DRIVE_WORK, CONTACT_WORK, FRICTION_LOSS, CONVECTION_WORK, DAMPING_LOSS, ITERATIONS, UNSOLVED = range(8)
@@ -141,8 +157,12 @@ ENERGIES = 8
     LANDINGS,
     LAW_STATE,
     DOMINANT,
-) = range(13)
-COLUMNS = 13
+    TANGENTIAL_FORCE_B,
+    CONTACT_POSITION_B,
+    SLIP_VELOCITY_B,
+    LAW_STATE_B,
+) = range(17)
+COLUMNS = 17
 
 # Kinds of probe rows: on positions, on centred velocities, on second differences.
 DISPLACEMENT, VELOCITY, ACCELERATION = range(3)

@@ -16,6 +16,8 @@ class Sizes(NamedTuple):
         Numbers of a run in a block.
     contacts, faces : int
         Number of contacts, and of blocks of their forces.
+    rows : int
+        Number of rows of all contacts: of the normal and the tangents of each.
     loads : int
         Number of unit loads.
     paths, coupled_paths : bool
@@ -31,6 +33,7 @@ class Sizes(NamedTuple):
     per_block: int
     contacts: int
     faces: int
+    rows: int
     loads: int
     paths: bool
     coupled_paths: bool
@@ -75,7 +78,7 @@ class Paths(NamedTuple):
     body_of : ndarray of int, shape (contacts,)
         Body that a contact moves round, -1 for none.
     at_start : ndarray, shape (blocks, rows, lanes)
-        The two rows of each contact at its initial place, if any moves round a body.
+        The rows of each contact at its initial place, if any moves round a body.
     """
 
     waves: np.ndarray
@@ -96,11 +99,13 @@ class Contacts(NamedTuple):
     ----------
     codes, laws : ndarray, shapes (contacts,), (contacts runs, parameters)
         Law of each contact and its parameters in each run.
+    rows : ndarray of int, shape (contacts + 1,)
+        First row of each contact, that of its normal, and the end of the last.
     constants, fixed : ndarray, a column a run
         Constants of each contact; compliance of the only one on constant rows.
     faces, scratch : ndarray, shape (rows, blocks, lanes)
         Displacements and compliances of all contacts; a linear system.
-    places : ndarray, shape (2 contacts, lanes)
+    places : ndarray, shape (rows, lanes)
         Row of displacements for each equation of the system; of runs side by side, in the first lane.
     now, sums : ndarray, a column a run
         State of each contact in a step; sums over a sample.
@@ -108,6 +113,7 @@ class Contacts(NamedTuple):
 
     codes: np.ndarray
     laws: np.ndarray
+    rows: np.ndarray
     constants: np.ndarray
     fixed: np.ndarray
     faces: np.ndarray

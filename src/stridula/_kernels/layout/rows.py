@@ -1,5 +1,8 @@
 """Rows of a block of modes, of a block of waves and of a block of contact forces."""
 
+from ..lanes.compiled import inlined
+from ..lanes.operations import Array
+
 # Rows of a mode: state, share of an increment kept, stiffness of a step, loads of this step; in a march of several
 # contacts, increment and position without contact force and push of the contacts; amplitudes of its waves on a path, or
 # of two products of waves, and of their derivatives.
@@ -19,7 +22,8 @@
     NORMAL,
     TANGENTIAL,
 ) = range(14)
-# From `NORMAL` on each contact has two rows, its displacement for a unit of the mode; unit loads and probes follow.
+# From `NORMAL` on each contact has a row for its normal and one for each tangent, its displacements for a unit of the
+# mode; unit loads and probes follow.
 CONTACTS = NORMAL
 
 # Rows of a wave: sine and cosine at the contact, alternately for the last step and for this one, and its number.
@@ -33,3 +37,9 @@ WAVE_SET = 5
 # Rows of contact forces: relative displacement under them; then the compliance, a row for a unit of each force; then as
 # many rows for the compliance of the constant rows alone.
 DISPLACEMENT, COMPLIANCE = range(2)
+
+
+@inlined
+def has_b(first_rows: Array, i: int) -> bool:
+    """Return whether contact `i` has a tangent b, as those in space do: a row after those of its normal and tangent."""
+    return first_rows[i + 1] - first_rows[i] > 2

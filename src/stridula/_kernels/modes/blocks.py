@@ -18,7 +18,6 @@ from ..layout import columns as at
 from ..layout.parts import Modes, Paths
 from ..layout.rows import (
     AMPLITUDE,
-    CONTACTS,
     FIRST,
     FORCE,
     INCREMENT,
@@ -199,11 +198,19 @@ def clear_push(rows: Array, blocks: int, runs: Runs) -> None:
 
 
 @inlined
-def add_push(rows: Array, i: int, begin: int, end: int, runs: Runs, normal: float, tangential: float) -> None:
-    """Add the forces of contact `i` to the push on the modes."""
+def add_push(rows: Array, row: int, begin: int, end: int, runs: Runs, normal: float, tangential: float) -> None:
+    """Add the forces along two successive rows, normal and tangent of a contact, to the push on the modes."""
     for k in range(begin, end):
-        push = fused(load(rows, k, CONTACTS + 2 * i, runs), normal, load(rows, k, PUSH, runs))
-        store(rows, k, PUSH, runs, fused(-load(rows, k, CONTACTS + 2 * i + 1, runs), tangential, push))
+        push = fused(load(rows, k, row, runs), normal, load(rows, k, PUSH, runs))
+        store(rows, k, PUSH, runs, fused(-load(rows, k, row + 1, runs), tangential, push))
+
+
+@inlined
+def add_push_along(rows: Array, row: int, begin: int, end: int, runs: Runs, tangential: float) -> None:
+    """Add the force along the row of a tangent to the push on the modes."""
+    for k in range(begin, end):
+        push = load(rows, k, PUSH, runs)
+        store(rows, k, PUSH, runs, fused(-load(rows, k, row, runs), tangential, push))
 
 
 @inlined

@@ -24,7 +24,7 @@ def differ(signals: Array, n: int, loads: int, runs: Runs) -> bool:
 def credit_loads(parts: Parts, n: int, runs: Runs) -> None:
     """Add the work of the loads up to step `n` since their amplitudes last changed, and begin anew."""
     sizes, modes, signals = parts.sizes, parts.modes, parts.imposed.signals
-    first = CONTACTS + 2 * sizes.contacts + sizes.loads
+    first = CONTACTS + sizes.rows + sizes.loads
     for j in range(sizes.loads):
         work = work_of_unit_load(modes.rows, first + j, sizes.blocks, runs)
         if n > 0:
@@ -42,4 +42,4 @@ def change_loads(parts: Parts, n: int, runs: Runs) -> None:
         credit_loads(parts, n, runs)
         for j in range(sizes.loads):
             factor = read(parts.imposed.signals, n, j * runs.columns + runs.first, runs.zero)
-            set_load(parts.modes.rows, j, CONTACTS + 2 * sizes.contacts + j, sizes.blocks, runs, factor)
+            set_load(parts.modes.rows, j, CONTACTS + sizes.rows + j, sizes.blocks, runs, factor)

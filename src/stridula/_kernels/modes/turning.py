@@ -9,7 +9,7 @@ from ..lanes.compiled import inlined, pasted
 from ..lanes.operations import Array, Number, Pair, Runs, add, anywhere, fused, held, hold, load, magnitude, read, store
 from ..layout import columns as at
 from ..layout.parts import Parts
-from ..layout.rows import CONTACTS, INCREMENT, POSITION, PUSH, D, Q
+from ..layout.rows import CONTACTS, INCREMENT, POSITION, PUSH, D, Q, has_b
 from .blocks import product
 
 # Rows of a block: drag and order; one minus the cosine, and the sine, of the turn of the pairs in this step and in the
@@ -23,9 +23,9 @@ TURN_ROWS = 15
 # Blocks of a turning body: the first and the end.
 BEGIN, END = range(2)
 # Effect of turning on a contact in a step, beyond the motion of the modes: half the rise of the gap in the last two
-# steps, and half the advance of the slip.
-RISE, ADVANCE = range(2)
-OF_CONTACT = 2
+# steps, and half the advance of the slip along each tangent.
+RISE, ADVANCE, ADVANCE_B = range(3)
+OF_CONTACT = 3
 
 
 @inlined
@@ -138,7 +138,7 @@ def look_ahead(rows: Array, turns: Array, begin: int, end: int, runs: Runs) -> N
 def turn_loads_and_probes(parts: Parts, begin: int, end: int, runs: Runs) -> None:
     """Exclude the motion by turning alone from the work of loads, and save its addition to the probes."""
     sizes, rows, probes = parts.sizes, parts.modes.rows, parts.probes
-    first = CONTACTS + 2 * sizes.contacts + sizes.loads
+    first = CONTACTS + sizes.rows + sizes.loads
     for j in range(sizes.loads):
         add(parts.modes.given, j, runs, product(rows, first + j, PUSH, begin, end, runs))
     first += sizes.loads
@@ -151,22 +151,35 @@ def turn_loads_and_probes(parts: Parts, begin: int, end: int, runs: Runs) -> Non
 @pasted
 def turn_contacts(parts: Parts, begin: int, end: int, first_body: bool, runs: Runs) -> None:
     """Save the effect of turning on contacts fixed in space; their anchors move with the material."""
-    rows, carried, of_contacts = parts.modes.rows, parts.state.carried, parts.turning.contacts
+    rows, of_contacts, first_rows = parts.modes.rows, parts.turning.contacts, parts.contacts.rows
     for i in range(parts.sizes.contacts):
         if parts.sizes.circles and parts.paths.body_of[i] >= 0:
             continue
-        row, here, base = CONTACTS + 2 * i, i * OF_CONTACT, i * at.CARRIED
+        row, here = CONTACTS + first_rows[i], i * OF_CONTACT
         rise = product(rows, row, POSITION, begin, end, runs)
         advance = product(rows, row + 1, INCREMENT, begin, end, runs)
-        passed = product(rows, row + 1, PUSH, begin, end, runs)
         if not first_body:
             rise += held(of_contacts, here + RISE, runs)
             advance += held(of_contacts, here + ADVANCE, runs)
         hold(of_contacts, here + RISE, runs, rise)
         hold(of_contacts, here + ADVANCE, runs, advance)
-        add(carried, base + at.MATERIAL, runs, passed)
-        add(carried, base + at.ANCHOR, runs, passed)
-        add(parts.contacts.sums, i * at.SUMS + at.FIRST_MATERIAL, runs, passed)
+        passed = product(rows, row + 1, PUSH, begin, end, runs)
+        pass_on(parts, i * at.CARRIED, at.MATERIAL, at.ANCHOR, i * at.SUMS + at.FIRST_MATERIAL, passed, runs)
+        if has_b(first_rows, i):
+            advance = product(rows, row + 2, INCREMENT, begin, end, runs)
+            if not first_body:
+                advance += held(of_contacts, here + ADVANCE_B, runs)
+            hold(of_contacts, here + ADVANCE_B, runs, advance)
+            passed = product(rows, row + 2, PUSH, begin, end, runs)
+            pass_on(parts, i * at.CARRIED, at.MATERIAL_B, at.ANCHOR_B, i * at.SUMS + at.FIRST_MATERIAL_B, passed, runs)
+
+
+@inlined
+def pass_on(parts: Parts, base: int, material: int, anchor: int, first: int, passed: Number, runs: Runs) -> None:
+    """Move the anchor of a contact along a tangent, and the place from which its slip is counted, with the material."""
+    add(parts.state.carried, base + material, runs, passed)
+    add(parts.state.carried, base + anchor, runs, passed)
+    add(parts.contacts.sums, first, runs, passed)
 
 
 @pasted
@@ -212,3 +225,8 @@ def credit_turning(parts: Parts, runs: Runs) -> None:
         driven -= normal * held(of_contacts, i * OF_CONTACT + RISE, runs)
         add(energies, at.CONTACT_WORK, runs, -driven)
         add(energies, at.DRIVE_WORK, runs, driven)
+        if has_b(parts.contacts.rows, i):
+            tangential = held(now, i * at.IN_STEP + at.TANGENTIAL_NOW_B, runs)
+            driven = tangential * held(of_contacts, i * OF_CONTACT + ADVANCE_B, runs)
+            add(energies, at.CONTACT_WORK, runs, -driven)
+            add(energies, at.DRIVE_WORK, runs, driven)
