@@ -157,9 +157,9 @@ def test_a_rigid_face_that_bounces_finds_its_forces(friction):
     assert np.abs(run.ledger_residual).max() < 1e-10 * run.drive_work.max()
 
 
-def test_a_rigid_face_without_solution_reports_a_remedy():
+def test_a_rigid_face_that_is_not_solved_reports_its_rank():
     system, _ = brake(0.4, stiffness=None)
-    with pytest.raises(st.Diverged, match="a rigid surface of so many points needs a contact stiffness"):
+    with pytest.raises(st.Diverged, match=r"rank \d+ of \d+ .* or too few sweeps"):
         st.simulate(system, 1e-3, probes=[], contact_solve=st.GaussSeidel(sweeps=2))
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numba.core import config
 
 from .._kernels.contacts.direct import FURTHER_ROWS, SAVED
+from .._kernels.contacts.newton import ROWS
 from .._kernels.lanes.vectors import LANES
 from .._kernels.layout import columns as at
 from .._kernels.layout.parts import Sizes
@@ -362,13 +363,18 @@ def compliance_in_blocks(compliances: Sequence[Array], sizes: Sizes, width: int)
     return out
 
 
-def room_to_solve(sizes: Sizes, width: int) -> tuple[Array, Array]:
-    """Return space for the equations of all contact forces, shape (rows, blocks, width), and for places in them."""
+def room_to_solve(sizes: Sizes, width: int) -> tuple[Array, Array, Array]:
+    """Return space for the equations of all contact forces, shape (rows, blocks, width), and for places in them.
+
+    Space to solve for the forces of one run together, shape (width, rows, numbers), is the last.
+    """
     rows = sizes.rows + FURTHER_ROWS + sizes.per_block
     out = aligned(rows, sizes.faces * width).reshape(rows, sizes.faces, width)
     if sizes.faces and sizes.per_block > 1:
         out[SAVED - sizes.per_block : SAVED, 0] = np.tri(width, k=-1).T[::-1]
-    return out, np.zeros((sizes.rows, width), dtype=np.int64)
+    numbers = (3 if sizes.space else 2) * sizes.contacts if sizes.contacts > 1 else 0
+    dense = np.zeros((width, 2 * numbers + ROWS, numbers))
+    return out, np.zeros((sizes.rows, width), dtype=np.int64), dense
 
 
 def turns_of(where: Layout, bodies: Sequence[Sequence[TurningBlocks]], width: int) -> Array:

@@ -32,7 +32,11 @@ def solve_contact(free: Free, law: Law, before: Before, step: Number) -> Touch:
         return slide_on_its_way(free, law, before, step)
     mu, last_slip = law.table[law.row, STATIC], before.slip
     touch = solve_coulomb(gap, slip + strayed, w, mu)
-    if before.status == SLIDING and (touch.status == STICKING or touch.tangential * last_slip < 0.0):
+    if (
+        before.status == SLIDING
+        and free.let_go == 0.0
+        and (touch.status == STICKING or touch.tangential * last_slip < 0.0)
+    ):
         turns, pressed, turned, slides = turn_round(gap, slip, last_slip, w, mu, mu)
         if turns:
             return Touch(pressed, turned, float(SLIDING if slides else STICKING), 0.0)

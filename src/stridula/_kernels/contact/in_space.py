@@ -219,6 +219,10 @@ def solve_in_space(free: FreeInSpace, law: Law, before: BeforeInSpace, step: Num
         return TouchInSpace(0.0, NOTHING, 0.0, 0.0)
     if law.code != at.COULOMB:
         return slide_on_its_way(free, law, before, step)
+    if free.let_go > 0.0:
+        # One law for holding and sliding, so that all contacts together have forces: the slip is that from the anchor.
+        slips = plus(slips, 1.0, free.strays)
+        free = FreeInSpace(gap, slips, NOTHING, w, free.let_go, free.guess)
     pulled, held = sticking_direction(gap, plus(slips, 1.0, free.strays), w)
     mu, was, last = law.table[law.row, STATIC], before.status, before.slip
     may_hold = held <= mu or mu == 0.0

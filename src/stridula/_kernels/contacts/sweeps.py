@@ -20,17 +20,20 @@ from ..layout.parts import Contacts, Sizes, Timing
 from ..layout.rows import COMPLIANCE, DISPLACEMENT, has_b
 from .direct import solve_states
 from .displacements import displace, displace_freely, displace_in_space, own_compliance
+from .together import all_under_coulomb, solve_together
 
 # Sweeps before the first direct solve for the forces of the states found, and between direct solves.
 FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 1, 8
 # Sweeps after which a contact that has broken away in this step is no longer held by its static coefficient.
 PATIENCE = 24
+# Newton's steps from different sweeps, after these.
+ATTEMPTS = 24
 # Mark of the other contacts, so that those in space know that it is late.
 LATE = 0.25
 # Tolerance of the gaps and slips that remain, relative to those that the forces undo, over that of the forces.
 GAPS = 0.01
-# Smallest ratio assumed of the changes still to come to the last change.
-LEAST_TO_COME = 0.1
+# Smallest ratio assumed of the changes still to come to the last change, and that where changes do not fall.
+LEAST_TO_COME, MOST_TO_COME = 0.1, 1e3
 # Change of a force by rounding alone, relative to the largest.
 ROUND_OFF = 1e-14
 # Relative rounding of the difference of two abscissas.
@@ -213,6 +216,15 @@ def largest_of(one: Number, other: Number) -> Number:
     return choose(other > one, other, one)
 
 
+@inlined
+def become_late(contacts: Contacts, sizes: Sizes, together: bool, runs: Runs) -> None:
+    """Let friction act against the slip of the step alone; hold no contact that has broken away under other laws."""
+    for i in range(sizes.contacts):
+        here = i * at.IN_STEP
+        broke = choose(held(contacts.now, here + at.BROKE, runs) > 0.5, 1.0, runs.zero + LATE)
+        hold(contacts.now, here + at.LET_GO, runs, runs.zero + LATE if together else broke)
+
+
 @entry
 def solve_closed(
     space: bool | None, contacts: Contacts, carried: Array, touching: Number, sizes: Sizes, timing: Timing, runs: Runs
@@ -230,7 +242,7 @@ def solve_closed(
     done = choose(touching > 0.5, runs.zero, 1.0)
     rounding = rounding_of_slips(space, carried, sizes, runs)
     made, error, before = runs.zero, choose(touching > 0.5, math.inf, runs.zero), runs.zero + math.inf
-    given_up = runs.zero
+    given_up, together = runs.zero, all_under_coulomb(contacts.codes)
     for sweep in range(timing.sweeps):
         change, largest, misfit, reach, settled = sweep_once(space, contacts, carried, sizes, timing.step, done, runs)
         goes_on = done < 0.5
@@ -240,7 +252,7 @@ def solve_closed(
         falls = choose(change < before, before, math.inf) < math.inf
         size = choose(largest > 0.0, largest, 1.0)
         to_come = largest_of(change / choose(falls, before - change, 1.0), runs.zero + LEAST_TO_COME)
-        estimate = choose(falls, change / size * to_come, math.inf)
+        estimate = change / size * choose(falls, to_come, MOST_TO_COME)
         estimate = choose(exact, change / size, estimate)
         # With more rows than modes, forces keep drifting among sets that close the same gaps.
         closed = misfit <= GAPS * timing.tolerance * reach + rounding
@@ -255,7 +267,7 @@ def solve_closed(
         # In space the directions of friction turn from sweep to sweep: a direct solve after each of the first sweeps is
         # Newton's method for them. Late solves only find other forces for the same motions.
         early = sweep + 1 <= SWEEPS_PER_DIRECT_SOLVE if sizes.space else sweep + 1 == FIRST_DIRECT_SOLVE
-        late = sizes.space and sweep + 1 > PATIENCE
+        late = (sizes.space or together) and sweep + 1 > PATIENCE
         if early or ((sweep + 1) % SWEEPS_PER_DIRECT_SOLVE == 0 and not late):
             changeable = choose(given_up > 0.5, settled, runs.zero + 1.0) if early else settled
             tried = choose(done < 0.5, changeable, runs.zero)
@@ -264,8 +276,14 @@ def solve_closed(
                 again = sizes.space and sweep > 0 and early
                 before = choose(tried > 0.5, change if again else runs.zero + math.inf, before)
         if sweep + 1 == PATIENCE:
-            for i in range(sizes.contacts):
-                here = i * at.IN_STEP
-                broke = held(contacts.now, here + at.BROKE, runs)
-                hold(contacts.now, here + at.LET_GO, runs, choose(broke > 0.5, 1.0, runs.zero + LATE))
+            become_late(contacts, sizes, together, runs)
+        attempt = sweep + 1 - PATIENCE
+        if together and attempt % SWEEPS_PER_DIRECT_SOLVE == 0 and 0 <= attempt < ATTEMPTS * SWEEPS_PER_DIRECT_SOLVE:
+            attempt //= SWEEPS_PER_DIRECT_SOLVE
+            tried = choose(done > 0.5, runs.zero, 1.0)
+            found = solve_together(contacts, carried, sizes, attempt, tried, timing.step, runs)
+            error, done = choose(found > 0.5, runs.zero, error), choose(found > 0.5, 1.0, done)
+            before = runs.zero + math.inf
+            if everywhere(done > 0.5):
+                break
     return made, error

@@ -154,6 +154,11 @@ def with_lane(value: Number, i: int, number: Number) -> Number:
     return number
 
 
+def lanes_of(like: Number) -> int:
+    """Return the number of runs of which a value has numbers."""
+    return 1
+
+
 # Compiled versions for numbers of one run; those for vectors are in `vectors`.
 
 
@@ -250,5 +255,7 @@ def add(array: Array, row: int, runs: Runs, value: Number) -> None:
 _for_numbers(read, lambda array, row, column, like: _is_number(like))
 _for_numbers(write, lambda array, row, column, value: _is_number(value))
 _for_numbers(lane, lambda value, i: _is_number(value))
+_for_numbers(with_lane, lambda value, i, number: _is_number(value))
+_for_numbers(lanes_of, _is_number)
 for _function in (choose, magnitude, anywhere, everywhere):
     _for_numbers(_function, _is_number)

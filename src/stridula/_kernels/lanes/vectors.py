@@ -12,6 +12,7 @@ from numba.core.datamodel.models import PrimitiveModel
 from numba.extending import lower_builtin, register_model, type_callable
 
 from . import operations as lanes
+from .compiled import overloaded
 
 LANES = lanes.WIDTH
 
@@ -203,6 +204,11 @@ def _sum(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         high = builder.shuffle_vector(vector, vector, _indices(range(half, count)))
         vector, count = builder.fadd(low, high), half
     return builder.extract_element(vector, _INDEX(0))
+
+
+@overloaded(lanes.lanes_of)
+def _lanes_of(like: Any) -> Any:
+    return (lambda like: LANES) if like is VECTOR else None
 
 
 _type(lanes.lane, lambda value, i: types.float64 if value is VECTOR else None)

@@ -107,6 +107,8 @@ class Contacts(NamedTuple):
         Displacements and compliances of all contacts; a linear system.
     places : ndarray, shape (rows, lanes)
         Row of displacements for each equation of the system; of runs side by side, in the first lane.
+    dense : ndarray, shape (runs, rows, numbers)
+        Space to solve for the forces of all contacts of a run together.
     now, sums : ndarray, a column a run
         State of each contact in a step; sums over a sample.
     """
@@ -119,6 +121,7 @@ class Contacts(NamedTuple):
     faces: np.ndarray
     scratch: np.ndarray
     places: np.ndarray
+    dense: np.ndarray
     now: np.ndarray
     sums: np.ndarray
 
