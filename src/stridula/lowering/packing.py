@@ -366,14 +366,15 @@ def compliance_in_blocks(compliances: Sequence[Array], sizes: Sizes, width: int)
 def room_to_solve(sizes: Sizes, width: int) -> tuple[Array, Array, Array]:
     """Return space for the equations of all contact forces, shape (rows, blocks, width), and for places in them.
 
-    Space to solve for the forces of one run together, shape (width, rows, numbers), is the last.
+    Space to solve for the forces of one run together, shape (runs, rows, numbers), is the last: the processor solves for
+    one run after the other.
     """
     rows = sizes.rows + FURTHER_ROWS + sizes.per_block
     out = aligned(rows, sizes.faces * width).reshape(rows, sizes.faces, width)
     if sizes.faces and sizes.per_block > 1:
         out[SAVED - sizes.per_block : SAVED, 0] = np.tri(width, k=-1).T[::-1]
     numbers = (3 if sizes.space else 2) * sizes.contacts if sizes.contacts > 1 else 0
-    dense = np.zeros((width, 2 * numbers + ROWS, numbers))
+    dense = np.zeros((1 if sizes.per_block > 1 else width, 2 * numbers + ROWS, numbers))
     return out, np.zeros((sizes.rows, width), dtype=np.int64), dense
 
 
