@@ -69,8 +69,8 @@ END = """    if law.code == at.LINEAR_WEAKENING:
 LAW_STEPS = (
     (
         "_kernels/layout/columns.py",
-        f" = range({len(CODES)})\n# In place of the law",
-        f", TRIAL_WEAKENING = range({len(CODES) + 1})\n# In place of the law",
+        f"SLIP = range({len(CODES)})\n",
+        f"SLIP, TRIAL_WEAKENING = range({len(CODES) + 1})\n",
     ),
     (
         "_kernels/layout/laws.py",
