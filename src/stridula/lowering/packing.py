@@ -366,8 +366,8 @@ def compliance_in_blocks(compliances: Sequence[Array], sizes: Sizes, width: int)
 def room_to_solve(sizes: Sizes, width: int) -> tuple[Array, Array, Array]:
     """Return space for the equations of all contact forces, shape (rows, blocks, width), and for places in them.
 
-    Space to solve for the forces of one run together, shape (runs, rows, numbers), is the last: the processor solves for
-    one run after the other.
+    Space to solve for the forces of one run together, shape (runs, rows, numbers), is the last: the processor solves
+    for one run after the other.
     """
     rows = sizes.rows + FURTHER_ROWS + sizes.per_block
     out = aligned(rows, sizes.faces * width).reshape(rows, sizes.faces, width)
