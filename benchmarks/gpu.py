@@ -160,8 +160,8 @@ def on_the_processor(at: Timing) -> float:
 
 def operations(blocks: Blocks) -> int:
     """Return the operations of a step, as counted above."""
-    modes = blocks.contacts.rows.shape[1]
-    bending, axial = (int(b - a) for a, b in blocks.contacts.spans[0].reshape(-1, 2)[1:])
+    modes, path = blocks.contacts.rows.shape[1], blocks.contacts.paths[0]
+    bending, axial = (0, 0) if path is None else (one.stop - one.start for one in (path.normal, path.tangential))
     return 25 * (modes - bending - axial) + 28 * (bending + axial) + 6 * max(bending, axial)
 
 
@@ -294,6 +294,8 @@ def dry_run() -> None:
         march.advance([run.imposed, run.imposed], 1)
         took = time.perf_counter() - began
         print(f"{name}: {len(march.ptx)} characters of PTX for compute capability {DRY[0]}.{DRY[1]}, {took:.1f} s")
+        if name == "one contact":
+            print(f"{operations(run.blocks)} operations a step")
         show_resources(march.ptx)
 
 
