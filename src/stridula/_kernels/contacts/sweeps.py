@@ -24,11 +24,10 @@ from .together import all_under_coulomb, solve_together
 
 # Sweeps before the first direct solve for the forces of the states found, and between direct solves.
 FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 1, 8
-# Sweeps after which a contact that has broken away in this step is no longer held by its static coefficient.
-PATIENCE = 24
-# Newton's steps from different sweeps, after these.
-ATTEMPTS = 24
-# Mark of the other contacts, so that those in space know that it is late.
+# Sweeps after which contacts under Coulomb's law are solved together, and contacts under other laws that have broken
+# away in this step are no longer held by their static coefficient; most attempts to solve contacts together.
+PATIENCE, ATTEMPTS = 24, 24
+# Mark of contacts whose friction then acts against the slip of the step alone.
 LATE = 0.25
 # Tolerance of the gaps and slips that remain, relative to those that the forces undo, over that of the forces.
 GAPS = 0.01
@@ -232,9 +231,10 @@ def solve_closed(
     """Solve contacts in turn until no force changes; return the number of sweeps and the error from the changes.
 
     Runs without any contact `touching` have no forces. The error is relative to the largest force. A direct solve helps
-    sweeps that converge slowly with unchanged states. A contact that was held and breaks away may have no consistent
-    state in which it could be held again: it is then let go. Results do not depend on the runs side by side: a run that
-    is done does not change. Compiled once for the march and for the start.
+    sweeps that converge slowly with unchanged states; contacts under Coulomb's law that still do not settle are solved
+    together. Under other laws a contact that was held and breaks away may have no consistent state in which it could be
+    held again: it is then let go. Results do not depend on the runs side by side: a run that is done does not change.
+    Compiled once for the march and for the start.
     """
     start_from_last(space, contacts, carried, touching, sizes, runs)
     if not anywhere(touching > 0.5):

@@ -19,7 +19,7 @@ from ..lanes.operations import (
 )
 from ..layout import columns as at
 from ..layout.parts import Contacts, Sizes
-from ..layout.rows import COMPLIANCE, DISPLACEMENT
+from ..layout.rows import COMPLIANCE, DISPLACEMENT, has_b
 from .newton import FORCES, FREE, RATIO, Face, Way, face_of, find_forces, project
 
 # Ways that are tried in turn, and whether each starts from the forces of the last step, not from those of the sweeps.
@@ -48,7 +48,7 @@ def all_under_coulomb(codes: Array) -> bool:
 @inlined
 def tangents_of(contacts: Contacts, i: int) -> int:
     """Return the number of tangents of contact `i`."""
-    return contacts.rows[i + 1] - contacts.rows[i] - 1
+    return 2 if has_b(contacts.rows, i) else 1
 
 
 @inlined
