@@ -373,8 +373,8 @@ def room_to_solve(sizes: Sizes, width: int) -> tuple[Array, Array, Array]:
     out = aligned(rows, sizes.faces * width).reshape(rows, sizes.faces, width)
     if sizes.faces and sizes.per_block > 1:
         out[SAVED - sizes.per_block : SAVED, 0] = np.tri(width, k=-1).T[::-1]
-    numbers = (3 if sizes.space else 2) * sizes.contacts if sizes.contacts > 1 else 0
-    dense = np.zeros((1 if sizes.per_block > 1 else width, 2 * numbers + ROWS, numbers))
+    numbers = sizes.rows if sizes.contacts > 1 else 0
+    dense = np.zeros((1 if sizes.per_block > 1 else width, numbers + ROWS, numbers))
     return out, np.zeros((sizes.rows, width), dtype=np.int64), dense
 
 

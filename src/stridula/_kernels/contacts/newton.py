@@ -1,251 +1,306 @@
-"""Forces of all contacts together under Coulomb's law, by Newton's method, where sweeps do not settle.
+"""Forces of many contacts together under Coulomb's law: steps of Newton's method, on plain arrays.
 
-With friction against the slip of the step, forces solve ``x = P(x - r u(x))``: ``u`` are gaps and slips, ``r`` a
-stiffness of each contact, and ``P`` the projection on its cone of friction, along its axis for the normal force and
-within the disc of that radius for the tangential one (Alart & Curnier 1991). Semi-smooth Newton; the step has the least
-change of forces where many close the same gaps (Levenberg & Marquardt). Forces have the signs with which they act on
-the modes, ``(normal, -tangential)``; each contact has 2 or 3 successive numbers.
+Each contact has a normal force and one or two tangential ones, with the signs with which they act on the modes,
+``(normal, -tangential)``. They are an apex, which is given, plus forces ``y`` within the cone of friction, for which
+``y = P(y - r w)``: `w` are the gap, and the slips plus a shift; `r` is a stiffness of the contact, and ``P`` the
+projection on its cone, along its axis for the normal force and within the disc of that radius for the tangential one
+(Alart & Curnier 1991). The step is semi-smooth: an open contact has no unknown; one that sticks has all its forces; one
+that slides has its normal force and, where it moves slowly, the force across the direction in which friction acts.
 """
 
 import math
 from typing import NamedTuple
 
-from ..lanes.compiled import called, strict
-from ..lanes.operations import Array, Pair
+from ..lanes.compiled import called, inlined
+from ..lanes.operations import Array, fused
+from .elimination import add_product, eliminate, substitute
 
-# Rows of numbers: gaps and slips without forces, forces, gaps and slips under them, the changes of both in a step, the
-# right side, the places of the unknowns; at the first number of a contact the ratio at rest, and its stiffness.
-FREE, FORCES, MOTIONS, MORE_FORCES, MORE_MOTIONS, RIGHT, PLACES, RATIO, STIFFNESS = range(9)
-ROWS = 9
+# Rows of numbers, one for each force: motions without forces, forces, motions under them; apex, shift of the slips,
+# last slips, direction of friction; equations, right sides, rows of pivots; forces and motions before a step, to
+# restore; motions of a column; motions in an equation: a number, its share and that of the number after it.
+(
+    FREE,
+    FORCES,
+    MOTIONS,
+    APEX,
+    SHIFT,
+    LAST,
+    WAY,
+    EQUATION,
+    RIGHT,
+    PIVOT,
+    OLD_FORCES,
+    OLD_MOTIONS,
+    COLUMN,
+    PLACE,
+    SHARE,
+    NEXT_SHARE,
+) = range(16)
+# Numbers of a contact, at its first number.
+RATIO, STIFFNESS, GIVE, BEYOND, STATE, KEPT, FACTORISED, WAS, ENDS = range(16, 25)
+# Of the run: size of the system whose factors are kept from step to step, 0 without one, and the largest friction of which
+# the direction is not an unknown in it.
+FACTORS = 25
+ROWS = 26
 
-# Largest number of steps, and that of halvings of one.
-STEPS, HALVINGS = 40, 10
-# Residual, relative to the largest force, below which the forces are found, and the decrease asked of a step.
-FOUND, DECREASE = 1e-12, 1e-4
-# Smallest and largest addition to the diagonal of the matrix.
-LEAST_GUARD, MOST_GUARD = 1e-9, 0.1
+# States of a contact in a step: open, held, sliding with its normal force as unknown, sliding with two unknowns.
+OPEN, HELD, SLIDING, TURNING = range(4)
+# Largest friction, in units of the force that undoes the slip, of which the direction is that of the slip, not an unknown:
+# in first steps, which find the states of contacts, and in later ones.
+SWIFT, SWIFTER = 0.25, 1e-4
+# Addition to the diagonal, relative to it: the step has the least change of forces where many close the same gaps.
+GUARD = 1e-5
+
+
+# A normal force and tangential ones, or changes of them; the last is zero in the plane.
+Vector = tuple[float, float, float]
 
 
 class Face(NamedTuple):
-    """Contacts of a run: compliance and slopes of the residual, (numbers, numbers), rows, and numbers of a contact."""
-
-    compliance: Array
-    slopes: Array
-    rows: Array
-    own: int
-
-
-class Way(NamedTuple):
-    """How forces are sought.
+    """Contacts of a run.
 
     Attributes
     ----------
-    stiffness : float
-        That of a contact in units of that of its own compliance.
-    guard : float
-        Addition to the diagonal per relative residual.
-    searches : bool
-        Whether steps are searched along. Whole steps pass kinks of the projection where a search would stop.
+    soft : ndarray, shape (numbers, numbers)
+        Compliance: a row of displacements for a unit of each force.
+    matrix : ndarray, shape (numbers, numbers)
+        Equations of a step: a row for each unknown.
+    rows : ndarray, shape (ROWS, numbers)
+        Numbers.
+    first : ndarray of int, shape (contacts + 1,)
+        First number of each contact, that of its normal force, and the end of the last.
     """
 
-    stiffness: float
-    guard: float
-    searches: bool
-
-
-class Projected(NamedTuple):
-    """Forces of a contact to project, the radius of the disc, and what the projection leaves: normal, tangents."""
-
-    normal: float
-    pulled: Pair
-    size: float
-    radius: float
-    left: float
-    missed: Pair
-
-
-@strict
-def face_of(dense: Array, count: int, own: int) -> Face:
-    """Return the parts of an array, shape (2 numbers + ROWS, numbers)."""
-    n = count * own
-    return Face(dense[:n, :n], dense[n : 2 * n, :n], dense[2 * n :, :n], own)
+    soft: Array
+    matrix: Array
+    rows: Array
+    first: Array
 
 
 @called
-def project(face: Face, n: int, share: float) -> Projected:
-    """Project the forces of the contact whose numbers begin with `n`, after a share of the step."""
-    rows, stiff = face.rows, face.rows[STIFFNESS, n]
-    force = rows[FORCES, n] + share * rows[MORE_FORCES, n]
-    normal = force - stiff * (rows[MOTIONS, n] + share * rows[MORE_MOTIONS, n])
-    first, second, across = rows[FORCES, n + 1] + share * rows[MORE_FORCES, n + 1], 0.0, 0.0
-    along = first - stiff * (rows[MOTIONS, n + 1] + share * rows[MORE_MOTIONS, n + 1])
-    if face.own > 2:
-        second = rows[FORCES, n + 2] + share * rows[MORE_FORCES, n + 2]
-        across = second - stiff * (rows[MOTIONS, n + 2] + share * rows[MORE_MOTIONS, n + 2])
-    pressed, size = max(normal, 0.0), math.hypot(along, across)
-    radius = rows[RATIO, n] * pressed
-    kept = radius / size if size > radius else 1.0
-    missed = first - kept * along, second - kept * across
-    return Projected(normal, (along, across), size, radius, force - pressed, missed)
+def add_three(out: Array, first: Array, second: Array, third: Array, factors: Vector) -> None:
+    """Add multiples of three rows."""
+    f, g, h = factors
+    for k in range(out.size):
+        out[k] = fused(f, first[k], fused(g, second[k], fused(h, third[k], out[k])))
+
+
+@inlined
+def add_motions(face: Face, out: Array, n: int, two: bool, forces: Vector) -> None:
+    """Add the motions under forces of the contact whose numbers begin with `n`."""
+    size = out.size
+    if two:
+        add_three(out, face.soft[n, :size], face.soft[n + 1, :size], face.soft[n + 2, :size], forces)
+    else:
+        add_product(out, face.soft[n, :size], forces[0])
+        add_product(out, face.soft[n + 1, :size], forces[1])
 
 
 @called
-def residual(face: Face, share: float) -> Pair:
-    """Return the size of the residual after a share of the step, and the largest force."""
-    left, largest = 0.0, 0.0
-    for n in range(0, len(face.compliance), face.own):
-        one = project(face, n, share)
-        left += one.left * one.left + one.missed[0] * one.missed[0] + one.missed[1] * one.missed[1]
-        largest = max(largest, one.normal)
-    return math.sqrt(left), largest
+def move(face: Face, i: int, changes: Vector) -> None:
+    """Add changes to the forces of contact `i`, and to all motions what they do."""
+    rows, n, two = face.rows, face.first[i], face.first[i + 1] - face.first[i] > 2
+    rows[FORCES, n] += changes[0]
+    rows[FORCES, n + 1] += changes[1]
+    if two:
+        rows[FORCES, n + 2] += changes[2]
+    if changes[0] != 0.0 or changes[1] != 0.0 or changes[2] != 0.0:
+        add_motions(face, rows[MOTIONS], n, two, changes)
 
 
 @called
-def set_out(face: Face, way: Way) -> None:
-    """Set stiffnesses, and the displacements under the forces."""
-    compliance, rows, own = face.compliance, face.rows, face.own
-    for n in range(0, len(compliance), own):
-        soft = 0.0
+def set_out(face: Face, stiffness: float) -> None:
+    """Set the stiffnesses of the contacts, in units of those of their own compliance, and the motions under the forces."""
+    rows = face.rows
+    for k in range(rows.shape[1]):
+        rows[MOTIONS, k] = rows[FREE, k]
+    for i in range(face.first.size - 1):
+        n, soft, own = face.first[i], 0.0, face.first[i + 1] - face.first[i]
         for k in range(n, n + own):
-            soft += compliance[k, k]
-        rows[STIFFNESS, n] = way.stiffness * own / soft
-    for k in range(len(compliance)):
-        moved = rows[FREE, k]
-        for j in range(len(compliance)):
-            moved += compliance[k, j] * rows[FORCES, j]
-        rows[MOTIONS, k] = moved
-        rows[MORE_FORCES, k], rows[MORE_MOTIONS, k] = 0.0, 0.0
+            soft += face.soft[k, k]
+        rows[STIFFNESS, n] = stiffness * own / soft
+        if rows[FORCES, n] != 0.0:
+            forces = rows[FORCES, n], rows[FORCES, n + 1], rows[FORCES, n + 2] if own > 2 else 0.0
+            add_motions(face, rows[MOTIONS], n, own > 2, forces)
+
+
+@inlined
+def gap_of(face: Face, n: int) -> float:
+    """Return the gap of the contact whose numbers begin with `n`, as it yields."""
+    rows = face.rows
+    return rows[MOTIONS, n] + rows[BEYOND, n] + rows[GIVE, n] * rows[FORCES, n]
 
 
 @called
-def number_unknowns(face: Face) -> int:
-    """Number the forces that may change; return their number."""
+def judge(face: Face, i: int, swift: float) -> float:
+    """Set state and direction of contact `i`; return the square of what its forces miss.
+
+    It slides with a given direction if its friction is below a share `swift` of the force that undoes the slip.
+    """
+    rows, n = face.rows, face.first[i]
+    two, stiff, normal = face.first[i + 1] - n > 2, rows[STIFFNESS, n], rows[FORCES, n] - rows[APEX, n]
+    first, second = rows[FORCES, n + 1] - rows[APEX, n + 1], rows[FORCES, n + 2] - rows[APEX, n + 2] if two else 0.0
+    missed = stiff / (1.0 + stiff * rows[GIVE, n]) * gap_of(face, n)
+    pressed = normal - missed
+    rows[KEPT, n] = 1.0
+    if pressed <= 0.0:
+        rows[STATE, n] = OPEN
+        return normal * normal + first * first + second * second
+    slip, across = rows[MOTIONS, n + 1] + rows[SHIFT, n + 1], 0.0
+    if two:
+        across = rows[MOTIONS, n + 2] + rows[SHIFT, n + 2]
+    along_a, along_b = first - stiff * slip, second - stiff * across
+    size, radius = math.sqrt(along_a * along_a + along_b * along_b), rows[RATIO, n] * pressed
+    rows[STATE, n] = HELD
+    if size > radius:
+        kept, fast = radius / size, stiff * math.sqrt(slip * slip + across * across)
+        rows[KEPT, n] = kept
+        rows[STATE, n] = TURNING if two and radius > swift * fast else SLIDING
+        rows[WAY, n + 1] = along_a / size
+        if two and rows[STATE, n] == TURNING:
+            rows[WAY, n + 2] = along_b / size
+        elif two:
+            rows[WAY, n + 1], rows[WAY, n + 2] = -stiff * slip / fast, -stiff * across / fast
+        along_a, along_b = kept * along_a, kept * along_b
+    first, second = first - along_a, second - along_b
+    return missed * missed + first * first + second * second
+
+
+@called
+def settle(face: Face, least: float) -> None:
+    """Do what needs no equation: open contacts lose their forces, friction of sliding ones has its direction.
+
+    Changes up to `least` are left to later steps.
+    """
+    rows = face.rows
+    for i in range(face.first.size - 1):
+        n, state = face.first[i], rows[STATE, face.first[i]]
+        two = face.first[i + 1] - n > 2
+        normal, first = rows[FORCES, n] - rows[APEX, n], rows[FORCES, n + 1] - rows[APEX, n + 1]
+        second = rows[FORCES, n + 2] - rows[APEX, n + 2] if two else 0.0
+        if state == OPEN:
+            move(face, i, (-normal, -first, -second))
+        elif state > HELD:
+            way, aside = rows[WAY, n + 1], rows[WAY, n + 2] if two else 0.0
+            pulled = rows[RATIO, n] * normal
+            if state == TURNING:
+                # Its force across the direction is an unknown.
+                pulled -= first * way + second * aside
+                first, second = 0.0, 0.0
+            first, second = pulled * way - first, pulled * aside - second
+            if abs(first) + abs(second) > least:
+                move(face, i, (0.0, first, second))
+
+
+@called
+def number_equations(face: Face) -> int:
+    """Number the unknown forces, and equations, of contacts in their states; return their number."""
     rows, size = face.rows, 0
-    for n in range(0, len(face.compliance), face.own):
-        acts = project(face, n, 0.0).normal > 0.0
-        for k in range(n, n + face.own):
-            acts = acts or rows[FORCES, k] != 0.0
-        if acts:
-            for k in range(n, n + face.own):
-                rows[PLACES, size] = k
-                size += 1
+    for i in range(face.first.size - 1):
+        n, state = face.first[i], rows[STATE, face.first[i]]
+        rows[EQUATION, n] = size
+        if state == OPEN:
+            continue
+        size = put_equation(face, size, n, 1.0, 0.0)
+        if state == HELD:
+            for k in range(n + 1, face.first[i + 1]):
+                size = put_equation(face, size, k, 1.0, 0.0)
+        elif state == TURNING:
+            size = put_equation(face, size, n + 1, -rows[WAY, n + 2], rows[WAY, n + 1])
     return size
 
 
-@called
-def fill(face: Face, size: int, guard: float) -> None:
-    """Set the slopes of the residual, a row for each unknown, and the right side."""
-    rows, slopes, own = face.rows, face.slopes, face.own
-    for k in range(0, size, own):
-        n = int(rows[PLACES, k])
-        one, stiff, at_rest = project(face, n, 0.0), rows[STIFFNESS, n], rows[RATIO, n]
-        slides = one.size > one.radius
-        kept = one.radius / one.size if slides else 1.0
-        along, across = (one.pulled[0] / one.size, one.pulled[1] / one.size) if slides else (0.0, 0.0)
-        for j in range(size):
-            row = int(rows[PLACES, j])
-            # Change of the argument of the projection with the unknown, then of the projection.
-            pressed, pulled = -stiff * face.compliance[n, row], -stiff * face.compliance[n + 1, row]
-            swerved = -stiff * face.compliance[n + 2, row] if own > 2 else 0.0
-            pressed += 1.0 if j == k else 0.0
-            pulled += 1.0 if j == k + 1 else 0.0
-            swerved += 1.0 if j == k + 2 and own > 2 else 0.0
-            if one.normal <= 0.0:
-                pressed, pulled, swerved = 0.0, 0.0, 0.0
-            elif slides:
-                on = along * pulled + across * swerved
-                pulled = kept * (pulled - along * on) + at_rest * along * pressed
-                swerved = kept * (swerved - across * on) + at_rest * across * pressed
-            slopes[k, j] = -pressed
-            slopes[k + 1, j] = -pulled
-            if own > 2:
-                slopes[k + 2, j] = -swerved
-        for line in range(k, k + own):
-            slopes[line, line] += 1.0 + (guard if one.normal > 0.0 else 0.0)
-        rows[RIGHT, k], rows[RIGHT, k + 1] = -one.left, -one.missed[0]
-        if own > 2:
-            rows[RIGHT, k + 2] = -one.missed[1]
+@inlined
+def put_equation(face: Face, size: int, place: int, share: float, next_share: float) -> int:
+    """Set the motions in the next equation, shares of a number and of the one after it; return the number of equations."""
+    face.rows[PLACE, size], face.rows[SHARE, size], face.rows[NEXT_SHARE, size] = place, share, next_share
+    return size + 1
 
 
 @called
-def solve_linear(matrix: Array, right: Array, size: int) -> bool:
-    """Solve a linear system in place by elimination with the largest pivots; return whether it is regular."""
-    for k in range(size):
-        best = k
-        for line in range(k + 1, size):
-            if abs(matrix[line, k]) > abs(matrix[best, k]):
-                best = line
-        if not abs(matrix[best, k]) > 0.0:
+def same_states(face: Face) -> bool:
+    """Return whether contacts have the states with which the matrix was factorised."""
+    for i in range(face.first.size - 1):
+        if face.rows[STATE, face.first[i]] != face.rows[FACTORISED, face.first[i]]:
             return False
-        if best != k:
-            for column in range(k, size):
-                matrix[k, column], matrix[best, column] = matrix[best, column], matrix[k, column]
-            right[k], right[best] = right[best], right[k]
-        for line in range(k + 1, size):
-            factor = matrix[line, k] / matrix[k, k]
-            if factor != 0.0:
-                for column in range(k + 1, size):
-                    matrix[line, column] -= factor * matrix[k, column]
-                right[line] -= factor * right[k]
-    for back in range(size):
-        k = size - 1 - back
-        found = right[k]
-        for column in range(k + 1, size):
-            found -= matrix[k, column] * right[column]
-        right[k] = found / matrix[k, k]
     return True
 
 
 @called
-def put_changes(face: Face, size: int) -> None:
-    """Set the changes of the forces and of the displacements in the step that was solved for."""
-    rows, compliance = face.rows, face.compliance
-    for k in range(len(compliance)):
-        rows[MORE_FORCES, k] = 0.0
-    for k in range(size):
-        rows[MORE_FORCES, int(rows[PLACES, k])] = rows[RIGHT, k]
-    for k in range(len(compliance)):
-        moved = 0.0
-        for j in range(len(compliance)):
-            moved += compliance[k, j] * rows[MORE_FORCES, j]
-        rows[MORE_MOTIONS, k] = moved
+def put_column(face: Face, unknown: int, size: int, n: int, two: bool, forces: Vector) -> None:
+    """Put the motions for a unit of a combination of the forces of a contact into the equations."""
+    rows, column, out = face.rows, face.rows[COLUMN], face.matrix[unknown]
+    for k in range(column.size):
+        column[k] = 0.0
+    add_motions(face, column, n, two, forces)
+    last = column.size - 1
+    for row in range(size):
+        place = int(rows[PLACE, row])
+        after = min(place + 1, last)
+        out[row] = rows[SHARE, row] * column[place] + rows[NEXT_SHARE, row] * column[after]
+
+
+@inlined
+def turning_stiffness(face: Face, n: int) -> float:
+    """Return the slip across the direction of friction for a unit of force across, at which this keeps its size."""
+    kept = face.rows[KEPT, n]
+    return (1.0 - kept) / (kept * face.rows[STIFFNESS, n])
 
 
 @called
-def take_step(face: Face, share: float) -> None:
-    """Change forces and displacements by a share of the step."""
+def factorise(face: Face, size: int) -> bool:
+    """Set the matrix of contacts in their states, and factorise it; return whether it is regular."""
+    rows, matrix = face.rows, face.matrix
+    for i in range(face.first.size - 1):
+        n, state, two = face.first[i], rows[STATE, face.first[i]], face.first[i + 1] - face.first[i] > 2
+        rows[FACTORISED, n] = state
+        if state == OPEN:
+            continue
+        at, mu, mean = int(rows[EQUATION, n]), rows[RATIO, n], 1.0 / rows[STIFFNESS, n]
+        way, aside = rows[WAY, n + 1], rows[WAY, n + 2] if two else 0.0
+        pulled = (0.0, 0.0) if state == HELD else (mu * way, mu * aside)
+        put_column(face, at, size, n, two, (1.0, pulled[0], pulled[1]))
+        matrix[at, at] += rows[GIVE, n] + GUARD * (mean + rows[GIVE, n])
+        if state == HELD:
+            for k in range(1, face.first[i + 1] - n):
+                put_column(face, at + k, size, n, two, (0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0))
+                matrix[at + k, at + k] += GUARD * mean
+        elif state == TURNING:
+            put_column(face, at + 1, size, n, two, (0.0, -aside, way))
+            matrix[at + 1, at + 1] += turning_stiffness(face, n) + GUARD * mean
+    return eliminate(matrix, rows[PIVOT], size)
+
+
+@called
+def take_step(face: Face, size: int) -> None:
+    """Solve the factorised equations for the changes of the forces, and make them."""
     rows = face.rows
-    for k in range(len(face.compliance)):
-        rows[FORCES, k] += share * rows[MORE_FORCES, k]
-        rows[MOTIONS, k] += share * rows[MORE_MOTIONS, k]
-        rows[MORE_FORCES, k], rows[MORE_MOTIONS, k] = 0.0, 0.0
-
-
-@strict
-def find_forces(face: Face, way: Way) -> bool:
-    """Change the forces until they are found; return whether they are."""
-    set_out(face, way)
-    left, largest = residual(face, 0.0)
-    # A step may reach one of the last residuals again.
-    second, third, fourth, fifth = left, left, left, left
-    for _ in range(STEPS):
-        if left <= FOUND * largest:
-            return True
-        size = number_unknowns(face)
-        relative = left / largest if largest > 0.0 else 1.0
-        fill(face, size, min(MOST_GUARD, max(LEAST_GUARD, way.guard * relative)))
-        if not solve_linear(face.slopes, face.rows[RIGHT], size):
-            return False
-        put_changes(face, size)
-        share, most, was = 1.0, max(left, second, third, fourth, fifth), left
-        left, largest = residual(face, share)
-        for _ in range(HALVINGS if way.searches else 0):
-            if left <= (1.0 - DECREASE * share) * most:
-                break
-            share *= 0.5
-            left, largest = residual(face, share)
-        if way.searches and not left <= most:
-            return False
-        take_step(face, share)
-        second, third, fourth, fifth = was, second, third, fourth
-    return False
+    right = rows[RIGHT]
+    for i in range(face.first.size - 1):
+        n, state = face.first[i], rows[STATE, face.first[i]]
+        if state == OPEN:
+            continue
+        at, two = int(rows[EQUATION, n]), face.first[i + 1] - n > 2
+        right[at] = -gap_of(face, n)
+        if state == HELD:
+            for k in range(1, face.first[i + 1] - n):
+                right[at + k] = -(rows[MOTIONS, n + k] + rows[SHIFT, n + k])
+        elif state == TURNING:
+            way, aside = rows[WAY, n + 1], rows[WAY, n + 2]
+            slip, swerved = rows[MOTIONS, n + 1] + rows[SHIFT, n + 1], rows[MOTIONS, n + 2] + rows[SHIFT, n + 2]
+            first, second = rows[FORCES, n + 1] - rows[APEX, n + 1], rows[FORCES, n + 2] - rows[APEX, n + 2]
+            soft = turning_stiffness(face, n)
+            right[at + 1] = -(way * swerved - aside * slip) - soft * (way * second - aside * first)
+    substitute(face.matrix, rows[PIVOT], right, size)
+    for i in range(face.first.size - 1):
+        n, state = face.first[i], rows[STATE, face.first[i]]
+        if state == OPEN:
+            continue
+        at, two = int(rows[EQUATION, n]), face.first[i + 1] - n > 2
+        pressed = right[at]
+        if state == HELD:
+            move(face, i, (pressed, right[at + 1], right[at + 2] if two else 0.0))
+            continue
+        pulled, swerved = rows[RATIO, n] * pressed, right[at + 1] if state == TURNING else 0.0
+        way, aside = rows[WAY, n + 1], rows[WAY, n + 2] if two else 0.0
+        move(face, i, (pressed, pulled * way - swerved * aside, pulled * aside + swerved * way))

@@ -20,13 +20,15 @@ from ..layout.parts import Contacts, Sizes, Timing
 from ..layout.rows import COMPLIANCE, DISPLACEMENT, has_b
 from .direct import solve_states
 from .displacements import displace, displace_freely, displace_in_space, own_compliance
-from .together import all_under_coulomb, solve_together
+from .together import AT_ONCE, all_under_coulomb, solve_together
 
 # Sweeps before the first direct solve for the forces of the states found, and between direct solves.
 FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 1, 8
 # Sweeps after which contacts under Coulomb's law are solved together, and contacts under other laws that have broken
 # away in this step are no longer held by their static coefficient; most attempts to solve contacts together.
 PATIENCE, ATTEMPTS = 24, 24
+# Number of contacts from which they are solved together at once.
+MANY = 12
 # Mark of contacts whose friction then acts against the slip of the step alone.
 LATE = 0.25
 # Tolerance of the gaps and slips that remain, relative to those that the forces undo, over that of the forces.
@@ -243,6 +245,11 @@ def solve_closed(
     rounding = rounding_of_slips(space, carried, sizes, runs)
     made, error, before = runs.zero, choose(touching > 0.5, math.inf, runs.zero), runs.zero + math.inf
     given_up, together = runs.zero, all_under_coulomb(contacts.codes)
+    if together and sizes.contacts >= MANY:
+        found, made = solve_together(contacts, carried, sizes, (0, AT_ONCE), 1.0 - done, timing, runs)
+        error, done = choose(found > 0.5, runs.zero, error), choose(found > 0.5, 1.0, done)
+        if everywhere(done > 0.5):
+            return made, error
     for sweep in range(timing.sweeps):
         change, largest, misfit, reach, settled = sweep_once(space, contacts, carried, sizes, timing.step, done, runs)
         goes_on = done < 0.5
@@ -281,7 +288,7 @@ def solve_closed(
         if together and attempt % SWEEPS_PER_DIRECT_SOLVE == 0 and 0 <= attempt < ATTEMPTS * SWEEPS_PER_DIRECT_SOLVE:
             attempt //= SWEEPS_PER_DIRECT_SOLVE
             tried = choose(done > 0.5, runs.zero, 1.0)
-            found = solve_together(contacts, carried, sizes, attempt, tried, timing.step, runs)
+            found, _ = solve_together(contacts, carried, sizes, (attempt, attempt + 1), tried, timing, runs)
             error, done = choose(found > 0.5, runs.zero, error), choose(found > 0.5, 1.0, done)
             before = runs.zero + math.inf
             if everywhere(done > 0.5):

@@ -1,39 +1,110 @@
-"""Step 5 for all contacts together, a run at a time: see `newton`."""
+"""Step 5 for all contacts under Coulomb's law together, a run at a time: see `newton`.
+
+A contact that stuck has its slip from the anchor; any other has the slip of this step with a share of the last two, which
+makes the velocity of second order (5c). Where with this share a slip would end or turn round in the step, friction of the
+part before its end is given, an apex, and the slip of the step counts for the rest (5d).
+"""
+
+import math
+from typing import NamedTuple
 
 from ..contact.exact import SLIDING, STICKING
 from ..contact.pressing import share_of
-from ..contact.solves import strayed
 from ..contact.yielding import give_of, path_of, yields_of
 from ..lanes.compiled import called, inlined
 from ..lanes.operations import (
     Array,
     Number,
+    Pair,
     Runs,
     component,
     held,
     hold,
     lane,
     lanes_of,
+    rows_of_run,
     set_component,
     with_lane,
 )
 from ..layout import columns as at
-from ..layout.parts import Contacts, Sizes
-from ..layout.rows import COMPLIANCE, DISPLACEMENT, has_b
-from .newton import FORCES, FREE, RATIO, Face, Way, face_of, find_forces, project
-
-# Ways that are tried in turn, and whether each starts from the forces of the last step, not from those of the sweeps.
-WAYS = (
-    Way(3.0, 0.0, False),
-    Way(3.0, 0.0, False),
-    Way(3.0, 1.0, True),
-    Way(1.0, 0.1, True),
-    Way(1.0, 0.0, False),
-    Way(10.0, 0.0, False),
+from ..layout.parts import Contacts, Sizes, Timing
+from ..layout.rows import COMPLIANCE, DISPLACEMENT
+from .newton import (
+    APEX,
+    BEYOND,
+    ENDS,
+    FACTORS,
+    FORCES,
+    FREE,
+    GIVE,
+    HELD,
+    LAST,
+    MOTIONS,
+    OLD_FORCES,
+    OLD_MOTIONS,
+    OPEN,
+    RATIO,
+    SHIFT,
+    STATE,
+    SWIFT,
+    SWIFTER,
+    WAS,
+    WAY,
+    Face,
+    factorise,
+    judge,
+    number_equations,
+    same_states,
+    set_out,
+    settle,
+    take_step,
 )
-AGAIN = True, False, True, False, True, False
-# Most indentations about which contacts yield, and the change of force that is settled, relative to the largest.
-SOFTENINGS, SETTLED = 20, 1e-11
+
+
+class Way(NamedTuple):
+    """How forces are sought.
+
+    Attributes
+    ----------
+    stiffness : float
+        That of a contact in units of that of its own compliance.
+    again : bool
+        Whether it starts from the forces of the last step, not from those of the sweeps.
+    second_order : bool
+        Whether slips of the last steps count.
+    searches : bool
+        Whether steps are searched along. Whole steps pass kinks of the projection where a search would stop.
+    """
+
+    stiffness: float
+    again: bool
+    second_order: bool
+    searches: bool
+
+
+# Ways that are tried in turn; those before any sweep.
+WAYS = (
+    Way(1.0, True, True, False),
+    Way(3.0, True, True, True),
+    Way(1.0, True, True, True),
+    Way(3.0, True, False, True),
+    Way(0.3, True, True, True),
+    Way(1.0, True, False, True),
+    Way(3.0, False, False, True),
+    Way(10.0, True, False, False),
+    Way(10.0, False, False, True),
+)
+AT_ONCE = 6
+# Largest number of whole steps, of steps that are searched along, and of halvings of one.
+WHOLE_STEPS, STEPS, HALVINGS = 20, 60, 6
+# Residual, relative to the largest force, below which the forces are found, and rounding of motions.
+FOUND, ROUNDING = 1e-12, 1e-15
+# Number of steps in which the residual must fall so far for factors to be kept, fewer where the states are those of the
+# last step: then the next one may use them, too.
+PATIENT, PATIENT_STEADY = 8, 3
+# Most rounds in which slips that end are found; steps in which their ends move, and the change of the forces before
+# them, relative to the largest, with which they stay.
+ROUNDS, MOVES, STAYS = 4, 6, 1e-3
 
 
 @inlined
@@ -46,149 +117,294 @@ def all_under_coulomb(codes: Array) -> bool:
 
 
 @inlined
-def tangents_of(contacts: Contacts, i: int) -> int:
-    """Return the number of tangents of contact `i`."""
-    return 2 if has_b(contacts.rows, i) else 1
-
-
-@inlined
 def column(k: int, along_a: int, along_b: int) -> int:
     """Return the column of tangent `k`."""
     return along_a if k == 0 else along_b
 
 
 @inlined
-def set_face(face: Face, again: bool, contacts: Contacts, carried: Array, i: int, one: int, runs: Runs) -> None:
-    """Set the numbers of contact `i` in lane `one`: its ratio, its motion, its forces."""
-    now, rows, here, base = contacts.now, face.rows, i * at.IN_STEP, i * at.CARRIED
-    n = i * face.own
-    rows[RATIO, n] = lane(held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, runs), one)
-    closed = lane(held(carried, base + at.STATUS, runs), one) > 0.5 * STICKING
-    last = lane(held(carried, base + at.LAST_NORMAL, runs), one) if closed else 0.0
-    rows[FORCES, n] = last if again else lane(held(now, here + at.NORMAL_NOW, runs), one)
-    rows[FREE, n] = lane(held(now, here + at.FREE_GAP, runs) + held(now, here + at.BEYOND, runs), one)
-    for k in range(face.own - 1):
-        rows[FORCES, n + 1 + k], rows[FREE, n + 1 + k] = 0.0, 0.0
-        if k < tangents_of(contacts, i):
-            was = lane(held(carried, base + column(k, at.LAST_TANGENTIAL, at.LAST_TANGENTIAL_B), runs), one)
-            found = lane(held(now, here + column(k, at.TANGENTIAL_NOW, at.TANGENTIAL_NOW_B), runs), one)
-            rows[FORCES, n + 1 + k] = -((was if closed else 0.0) if again else found)
-            # Slips are those from the anchor where a contact stuck before.
-            places = column(k, at.MATERIAL, at.MATERIAL_B), column(k, at.ANCHOR, at.ANCHOR_B)
-            slip = held(now, here + column(k, at.FREE_SLIP, at.FREE_SLIP_B), runs)
-            rows[FREE, n + 1 + k] = lane(slip + strayed(carried, base, places[0], places[1], runs), one)
-
-
-@called
-def put_face(face: Face, again: bool, contacts: Contacts, carried: Array, one: int, runs: Runs) -> None:
-    """Set the compliance and the numbers of all contacts in lane `one`; a contact with a stiffness gives more.
-
-    A tangent that a contact does not have in a system with others in space has no compliance.
-    """
-    own = face.own
-    for i in range(contacts.codes.size):
-        set_face(face, again, contacts, carried, i, one, runs)
-        for k in range(own):
-            for j in range(contacts.codes.size):
-                for other in range(own):
-                    soft = 0.0
-                    if k <= tangents_of(contacts, i) and other <= tangents_of(contacts, j):
-                        row, unit = contacts.rows[i] + k, contacts.rows[j] + other
-                        soft = lane(component(contacts.faces, row, COMPLIANCE + unit, runs), one)
-                    face.compliance[i * own + k, j * own + other] = soft
-        face.compliance[i * own, i * own] += lane(held(contacts.now, i * at.IN_STEP + at.GIVE, runs), one)
+def number_of(array: Array, row: int, one: int, runs: Runs) -> float:
+    """Return the number of a run in lane `one`."""
+    return lane(held(array, row, runs), one)
 
 
 @inlined
-def put_in_lane(array: Array, row: int, one: int, number: float, runs: Runs) -> None:
+def set_number(array: Array, row: int, one: int, number: float, runs: Runs) -> None:
     """Set the number of a run in lane `one`."""
     hold(array, row, runs, with_lane(held(array, row, runs), one, number))
 
 
 @called
-def accept(face: Face, contacts: Contacts, one: int, runs: Runs) -> None:
-    """Set forces, states and displacements of all contacts to those found."""
-    now = contacts.now
-    for i in range(contacts.codes.size):
-        here, n, found = i * at.IN_STEP, i * face.own, project(face, i * face.own, 0.0)
-        normal, slides = max(found.normal, 0.0), found.size > found.radius
-        kept = found.radius / found.size if slides else 1.0
-        status = 0.0 if normal == 0.0 else float(SLIDING if slides else STICKING)
-        face.rows[FORCES, n] = normal
-        put_in_lane(now, here + at.NORMAL_NOW, one, normal, runs)
-        put_in_lane(now, here + at.STATUS_NOW, one, status, runs)
-        put_in_lane(now, here + at.JAMMED_NOW, one, 0.0, runs)
-        if normal > 0.0:
-            put_in_lane(now, here + at.MAY_TOUCH, one, 1.0, runs)
-        for k in range(tangents_of(contacts, i)):
-            pulled = kept * found.pulled[k]
-            face.rows[FORCES, n + 1 + k] = pulled
-            put_in_lane(now, here + column(k, at.TANGENTIAL_NOW, at.TANGENTIAL_NOW_B), one, -pulled, runs)
-    displace_anew(face, contacts, one, runs)
+def put_contact(face: Face, way: Way, contacts: Contacts, carried: Array, i: int, one: int, runs: Runs) -> None:
+    """Set the numbers of contact `i` in lane `one`: its ratio, its motion, its last slips and forces."""
+    now, rows, n, here, base = contacts.now, face.rows, face.first[i], i * at.IN_STEP, i * at.CARRIED
+    status = number_of(carried, base + at.STATUS, one, runs)
+    was_closed = status > 0.5 * STICKING
+    rows[RATIO, n] = number_of(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, one, runs)
+    rows[WAS, n], rows[ENDS, n], rows[GIVE, n], rows[BEYOND, n], rows[APEX, n] = status, 0.0, 0.0, 0.0, 0.0
+    last = number_of(carried, base + at.LAST_NORMAL, one, runs) if was_closed else 0.0
+    rows[FORCES, n] = last if way.again else number_of(now, here + at.NORMAL_NOW, one, runs)
+    rows[FREE, n] = number_of(now, here + at.FREE_GAP, one, runs)
+    for k in range(face.first[i + 1] - n - 1):
+        put_tangent(face, way, contacts, carried, i, k, one, runs)
 
 
 @inlined
-def displace_anew(face: Face, contacts: Contacts, one: int, runs: Runs) -> None:
-    """Set the displacements under the forces found."""
-    for i in range(contacts.codes.size):
-        here, n = i * at.IN_STEP, i * face.own
-        for k in range(1 + tangents_of(contacts, i)):
-            free = at.FREE_GAP if k == 0 else column(k - 1, at.FREE_SLIP, at.FREE_SLIP_B)
-            moved = lane(held(contacts.now, here + free, runs), one)
-            for other in range(len(face.compliance)):
-                moved += face.compliance[n + k, other] * face.rows[FORCES, other]
-            if k == 0:
-                moved -= lane(held(contacts.now, here + at.GIVE, runs), one) * face.rows[FORCES, n]
-            row = contacts.rows[i] + k
-            was = component(contacts.faces, row, DISPLACEMENT, runs)
-            set_component(contacts.faces, row, DISPLACEMENT, runs, with_lane(was, one, moved))
+def put_tangent(
+    face: Face, way: Way, contacts: Contacts, carried: Array, i: int, k: int, one: int, runs: Runs
+) -> None:
+    """Do `put_contact` for a tangent."""
+    now, rows, n, here, base = contacts.now, face.rows, face.first[i], i * at.IN_STEP, i * at.CARRIED
+    m, status = n + 1 + k, rows[WAS, n]
+    was = number_of(carried, base + column(k, at.LAST_TANGENTIAL, at.LAST_TANGENTIAL_B), one, runs)
+    found = number_of(now, here + column(k, at.TANGENTIAL_NOW, at.TANGENTIAL_NOW_B), one, runs)
+    rows[FORCES, m] = -((was if status > 0.5 * STICKING else 0.0) if way.again else found)
+    rows[FREE, m] = number_of(now, here + column(k, at.FREE_SLIP, at.FREE_SLIP_B), one, runs)
+    last = number_of(carried, base + column(k, at.LAST_SLIP, at.LAST_SLIP_B), one, runs)
+    earlier = number_of(carried, base + column(k, at.EARLIER_SLIP, at.EARLIER_SLIP_B), one, runs)
+    rows[LAST, m], rows[APEX, m], rows[SHIFT, m], rows[WAY, m] = last, 0.0, 0.0, 0.0
+    if abs(status - STICKING) < 0.5:
+        material = number_of(carried, base + column(k, at.MATERIAL, at.MATERIAL_B), one, runs)
+        rows[SHIFT, m] = material - number_of(carried, base + column(k, at.ANCHOR, at.ANCHOR_B), one, runs)
+    elif way.second_order and face.first[i + 1] - n > 2:
+        rows[SHIFT, m] = (6.0 * last + earlier) / 9.0
 
 
 @called
-def soften_anew(face: Face, contacts: Contacts, carried: Array, one: int, step: Number, runs: Runs) -> bool:
-    """Set how contacts yield about their indentations in lane `one`; return whether their forces are those there."""
-    rows, wrong, largest = face.rows, 0.0, 0.0
-    for i in range(contacts.codes.size):
-        here, n, row = i * at.IN_STEP, i * face.own, contacts.rows[i]
-        yields, path = yields_of(i, contacts.constants, runs), path_of(i, carried, runs)
+def soften(face: Face, contacts: Contacts, carried: Array, i: int, one: int, step: float, runs: Runs) -> None:
+    """Set how contact `i` yields about its indentation in lane `one`."""
+    yields = yields_of(i, contacts.constants, runs)
+    if not lane(yields.stiffness, one) > 0.0:
+        return
+    rows, n, path = face.rows, face.first[i], path_of(i, carried, runs)
+    inside = -rows[MOTIONS, n]
+    # Without the forces of the contact itself it is deeper.
+    deeper = inside
+    for k in range(n, face.first[i + 1]):
+        deeper += face.soft[k, n] * rows[FORCES, k]
+    alike = with_lane(held(carried, i * at.CARRIED + at.LAST_GAP, runs), one, 0.0)
+    share = share_of(with_lane(alike, one, deeper), path, yields)
+    soft = with_lane(alike, one, face.soft[n, n])
+    give, beyond = give_of(with_lane(alike, one, inside), path, yields, share, soft, step, runs.zero)
+    rows[GIVE, n], rows[BEYOND, n] = lane(give, one), lane(beyond, one)
+
+
+@called
+def end_slip(face: Face, i: int) -> float:
+    """Set the forces of contact `i` up to the end of its slip (5d); return their change.
+
+    They are those with which it would slide on, times the share of the step before the end.
+    """
+    rows, n, size = face.rows, face.first[i], 0.0
+    own = face.first[i + 1] - n
+    for k in range(n + 1, n + own):
+        size += rows[LAST, k] * rows[LAST, k]
+    size = math.sqrt(size)
+    gap = rows[MOTIONS, n] + rows[BEYOND, n]
+    for k in range(n, n + own):
+        gap -= face.soft[k, n] * rows[FORCES, k]
+    clear = face.soft[n, n] + rows[GIVE, n]
+    for k in range(n + 1, n + own):
+        clear -= rows[RATIO, n] * face.soft[k, n] * rows[LAST, k] / size
+    on = max(-gap / clear, 0.0) if clear > 0.0 else 0.0
+    farther = 0.0
+    for k in range(n + 1, n + own):
+        slip = rows[MOTIONS, k] + on * face.soft[n, k] - face.soft[n, k] * rows[FORCES, n]
+        for m in range(n + 1, n + own):
+            slip -= face.soft[m, k] * (rows[FORCES, m] + rows[RATIO, n] * on * rows[LAST, m] / size)
+        farther += slip * rows[LAST, k] / size
+    share = size / (size - farther) if farther < 0.0 else 0.0
+    changed = abs(share * on - rows[APEX, n])
+    rows[APEX, n] = share * on
+    for k in range(n + 1, n + own):
+        rows[APEX, k] = -rows[RATIO, n] * share * on * rows[LAST, k] / size
+    return changed
+
+
+@called
+def find_ends(face: Face) -> int:
+    """Mark slips that end or turn round in this step, from the forces found with those of the last steps.
+
+    Return their number. For them the slip of this step counts.
+    """
+    rows, found = face.rows, 0
+    for i in range(face.first.size - 1):
+        n, own = face.first[i], face.first[i + 1] - face.first[i]
+        stuck = abs(rows[WAS, n] - STICKING) < 0.5
+        if rows[ENDS, n] > 0.0 or stuck or rows[STATE, n] == OPEN:
+            continue
+        slid, size, forward, on = rows[WAS, n] > SLIDING - 0.5, 0.0, 0.0, 0.0
+        for k in range(n + 1, n + own):
+            size += rows[LAST, k] * rows[LAST, k]
+            forward -= rows[WAY, k] * rows[MOTIONS, k]
+            on -= rows[WAY, k] * rows[LAST, k]
+        slides = rows[STATE, n] != HELD
+        if slides and forward >= 0.0 and (not slid or on >= 0.0):
+            continue
+        if not slid and own == 2:
+            continue
+        for k in range(n + 1, n + own):
+            rows[SHIFT, k] = 0.0
+        rows[ENDS, n] = 2.0 if slid and size > 0.0 else 1.0
+        found += 1
+    return found
+
+
+@called
+def evaluate(
+    face: Face, contacts: Contacts, carried: Array, one: int, step: float, ends_move: bool, runs: Runs
+) -> tuple[float, float, float]:
+    """Set states, yielding and ends of slips; return the residual, the largest force, and how far ends have moved."""
+    left, largest, moved, rows = 0.0, 0.0, 0.0, face.rows
+    for i in range(face.first.size - 1):
+        n = face.first[i]
+        soften(face, contacts, carried, i, one, step, runs)
+        if ends_move and rows[ENDS, n] > 1.5:
+            moved = max(moved, end_slip(face, i))
+        left += judge(face, i, rows[FACTORS, 1])
         largest = max(largest, rows[FORCES, n])
-        if lane(yields.stiffness, one) > 0.0:
-            inside = -lane(component(contacts.faces, row, DISPLACEMENT, runs), one)
-            soft = component(contacts.faces, row, COMPLIANCE + row, runs)
-            # Without the forces of the contact itself it is deeper.
-            deeper = inside + lane(soft, one) * rows[FORCES, n]
-            for k in range(1, face.own):
-                deeper += face.compliance[n, n + k] * rows[FORCES, n + k]
-            share = share_of(with_lane(runs.zero, one, deeper), path, yields)
-            give, beyond = give_of(with_lane(runs.zero, one, inside), path, yields, share, soft, step, runs.zero)
-            softer, further = lane(give, one), lane(beyond, one)
-            wrong = max(wrong, abs(inside - further - softer * rows[FORCES, n]) / (lane(soft, one) + softer))
-            put_in_lane(contacts.now, here + at.GIVE, one, softer, runs)
-            put_in_lane(contacts.now, here + at.BEYOND, one, further, runs)
-    return wrong <= SETTLED * largest
+    return math.sqrt(left), largest, moved
+
+
+@called
+def keep_old(face: Face) -> None:
+    """Keep forces and motions before a step."""
+    rows = face.rows
+    for k in range(rows.shape[1]):
+        rows[OLD_FORCES, k], rows[OLD_MOTIONS, k] = rows[FORCES, k], rows[MOTIONS, k]
+
+
+@called
+def halve(face: Face) -> None:
+    """Take back half of a step."""
+    rows = face.rows
+    for k in range(rows.shape[1]):
+        rows[FORCES, k] = 0.5 * (rows[FORCES, k] + rows[OLD_FORCES, k])
+        rows[MOTIONS, k] = 0.5 * (rows[MOTIONS, k] + rows[OLD_MOTIONS, k])
+
+
+@called
+def rounding_of(face: Face) -> float:
+    """Return the rounding of forces that motions without forces bring."""
+    farthest = 0.0
+    for i in range(face.first.size - 1):
+        n = face.first[i]
+        farthest = max(farthest, abs(face.rows[FREE, n]) / face.soft[n, n])
+    return ROUNDING * farthest
+
+
+@called
+def find_forces(
+    face: Face, way: Way, contacts: Contacts, carried: Array, one: int, timing: Timing, runs: Runs
+) -> int:
+    """Change the forces until they are found; return the number of steps, -1 if they are not."""
+    set_out(face, way.stiffness)
+    factors, rounding, ends_move, before, halvings = face.rows[FACTORS], rounding_of(face), True, math.inf, 0
+    # A step may reach one of the last residuals again.
+    second, third, fourth, fresh, patience = math.inf, math.inf, math.inf, False, PATIENT
+    for trial in range(STEPS if way.searches else WHOLE_STEPS):
+        left, largest, moved = evaluate(face, contacts, carried, one, timing.step, ends_move, runs)
+        ends_move = ends_move and trial < MOVES and moved > STAYS * largest
+        # Where many forces close the same gaps, rounding may leave more than is asked for.
+        stalls = left <= timing.tolerance * largest and left > 0.1 * before
+        if (stalls or left <= FOUND * largest + rounding) and not ends_move:
+            return trial
+        if not left < math.inf:
+            break
+        if way.searches and not left <= max(before, second, third, fourth):
+            # A step that nowhere falls is taken short.
+            if halvings < HALVINGS:
+                halve(face)
+                halvings += 1
+                continue
+        alike = factors[0] > 0.0 and same_states(face)
+        if trial == 0:
+            patience = PATIENT_STEADY if alike else PATIENT
+        if not alike or left * (left / before) ** patience > FOUND * largest:
+            # With the directions of friction as unknowns where these factors, of this step, are too slow.
+            factors[1] = SWIFTER if alike and fresh else SWIFT
+            left, largest, moved = evaluate(face, contacts, carried, one, timing.step, False, runs)
+            size = number_equations(face)
+            fresh = factorise(face, size)
+            factors[0] = float(size) if fresh else 0.0
+            if not fresh:
+                break
+        before, second, third, fourth, halvings = left, before, second, third, 0
+        if way.searches:
+            keep_old(face)
+        settle(face, 0.1 * FOUND * largest)
+        take_step(face, int(factors[0]))
+    return -1
+
+
+@called
+def jams(face: Face, n: int, own: int) -> bool:
+    """Return whether a contact that is held would press itself open by sliding."""
+    pulled, lifted = 0.0, 0.0
+    for k in range(n + 1, n + own):
+        pulled += face.rows[FORCES, k] ** 2
+        lifted -= face.soft[k, n] * face.rows[FORCES, k]
+    return pulled > 0.0 and face.soft[n, n] * math.sqrt(pulled) <= face.rows[RATIO, n] * lifted
+
+
+@called
+def accept(face: Face, contacts: Contacts, one: int, runs: Runs) -> None:
+    """Set forces, states and displacements of all contacts to those found."""
+    now, rows = contacts.now, face.rows
+    for i in range(face.first.size - 1):
+        here, n, own = i * at.IN_STEP, face.first[i], face.first[i + 1] - face.first[i]
+        normal, state = max(rows[FORCES, n], 0.0), rows[STATE, n]
+        status = 0.0 if normal == 0.0 else float(STICKING if state == HELD else SLIDING)
+        set_number(now, here + at.NORMAL_NOW, one, normal, runs)
+        set_number(now, here + at.STATUS_NOW, one, status, runs)
+        set_number(now, here + at.JAMMED_NOW, one, 1.0 if status == STICKING and jams(face, n, own) else 0.0, runs)
+        set_number(now, here + at.GIVE, one, rows[GIVE, n], runs)
+        set_number(now, here + at.BEYOND, one, rows[BEYOND, n], runs)
+        if normal > 0.0:
+            set_number(now, here + at.MAY_TOUCH, one, 1.0, runs)
+        for k in range(n, n + own):
+            moved = with_lane(component(contacts.faces, k, DISPLACEMENT, runs), one, rows[MOTIONS, k])
+            set_component(contacts.faces, k, DISPLACEMENT, runs, moved)
+        for k in range(own - 1):
+            pulled = rows[FORCES, n + 1 + k] if normal > 0.0 else 0.0
+            if status == SLIDING:
+                pulled = rows[APEX, n + 1 + k] + rows[RATIO, n] * (normal - rows[APEX, n]) * rows[WAY, n + 1 + k]
+            set_number(now, here + column(k, at.TANGENTIAL_NOW, at.TANGENTIAL_NOW_B), one, -pulled, runs)
+
+
+@called
+def seek(
+    face: Face, way: Way, contacts: Contacts, carried: Array, one: int, timing: Timing, runs: Runs
+) -> int:
+    """Seek the forces of all contacts of the run in lane `one`; return the number of steps, -1 if they are not found."""
+    for i in range(face.first.size - 1):
+        put_contact(face, way, contacts, carried, i, one, runs)
+    made = 0
+    for _ in range(ROUNDS):
+        steps = find_forces(face, way, contacts, carried, one, timing, runs)
+        if steps < 0:
+            return -1
+        made += steps
+        if not way.second_order or find_ends(face) == 0:
+            break
+    accept(face, contacts, one, runs)
+    return made
 
 
 @called
 def solve_together(
-    contacts: Contacts, carried: Array, sizes: Sizes, attempt: int, tried: Number, step: Number, runs: Runs
-) -> Number:
-    """Seek the forces of all contacts in runs `tried`; return where they are found.
-
-    Contacts that yield do so about their last indentations, until these do not change.
-    """
-    found = runs.zero
-    face = face_of(contacts.dense[runs.first], sizes.contacts, 3 if sizes.space else 2)
-    way = attempt % len(WAYS)
+    contacts: Contacts, carried: Array, sizes: Sizes, attempts: Pair, tried: Number, timing: Timing, runs: Runs
+) -> tuple[Number, Number]:
+    """Seek the forces of all contacts in runs `tried` in some of the ways; return where they are found, and steps."""
+    found, made, numbers = runs.zero, runs.zero, sizes.rows
     for one in range(lanes_of(runs.zero)):
         if lane(tried, one) > 0.5:
-            again = AGAIN[way]
-            for _ in range(SOFTENINGS):
-                put_face(face, again, contacts, carried, one, runs)
-                if not find_forces(face, WAYS[way]):
+            dense = contacts.dense[runs.first + one]
+            soft = rows_of_run(contacts.faces, COMPLIANCE, one, runs)
+            face = Face(soft, dense[:numbers], dense[numbers:], contacts.rows)
+            for attempt in range(attempts[0], attempts[1]):
+                steps = seek(face, WAYS[attempt % len(WAYS)], contacts, carried, one, timing, runs)
+                if steps >= 0:
+                    found, made = with_lane(found, one, 1.0), with_lane(made, one, float(steps))
                     break
-                accept(face, contacts, one, runs)
-                again = False
-                if soften_anew(face, contacts, carried, one, step, runs):
-                    found = with_lane(found, one, 1.0)
-                    break
-    return found
+    return found, made

@@ -66,7 +66,8 @@ def overloaded(target: Callable[..., Any]) -> Callable[[F], F]:
 
         names = [one.replace(annotation=one.empty) for one in inspect.signature(choose).parameters.values()]
         chosen.__signature__ = inspect.Signature(names)  # type: ignore[attr-defined]
-        overload(target)(chosen)
+        # Some return parts of arrays, for which numba counts references.
+        overload(target, jit_options={"_nrt": True})(chosen)
         return choose
 
     return declare

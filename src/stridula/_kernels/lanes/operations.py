@@ -154,6 +154,11 @@ def with_lane(value: Number, i: int, number: Number) -> Number:
     return number
 
 
+def rows_of_run(rows: Array, first: int, one: int, runs: Runs) -> Array:
+    """Return the rows from `first` on, each contiguous over all blocks, of the run in lane `one`, as a matrix."""
+    return rows[first:, :, runs.first]
+
+
 def lanes_of(like: Number) -> int:
     """Return the number of runs of which a value has numbers."""
     return 1
@@ -225,6 +230,17 @@ def _set_component(rows: Any, k: Any, row: Any, runs: Any, value: Any) -> Any:
 
     def implementation(rows: Any, k: Any, row: Any, runs: Any, value: Any) -> None:
         rows[row, k >> SHIFT, k & (WIDTH - 1)] = value
+
+    return implementation
+
+
+@overloaded(rows_of_run)
+def _rows_of_run(rows: Any, first: Any, one: Any, runs: Any) -> Any:
+    if not of_one(runs):
+        return lambda rows, first, one, runs: rows[first:, :, one]
+
+    def implementation(rows: Any, first: Any, one: Any, runs: Any) -> Any:
+        return rows[first:].reshape((rows.shape[0] - first, rows.shape[1] * rows.shape[2]))
 
     return implementation
 
