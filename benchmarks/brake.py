@@ -35,10 +35,13 @@ TITLE = "a brake of two pads on a disc that turns"
 SOURCE = Path(__file__).with_name("brake.c")
 DIVISIONS = sized((3, 5, 1), (1, 2, 1))
 # 0.2 of the shortest period of the bodies over pi; the default step is shorter, as it resolves pads on their linings.
-STEP, RATIO, STEPS = 5e-6, 10, sized(200, 20)
-# Steps before those that are timed.
+STEP, RATIO = 5e-6, 10
+# Steps before those that are timed, and their number.
 BEFORE = {"sliding": 10, "squealing": sized(1000, 40)}
-TOLERANCE, BAR = 1e-6, 1.6
+STEPS = {"sliding": sized(50, 20), "squealing": sized(200, 20)}
+# Largest differences. In squeal the runs part at the first slip that turns round, for which C has another rule: there
+# resultants and losses are compared.
+TOLERANCE, CHAOTIC, BAR = 1e-6, 0.02, 1.6
 LAST_FORCES = [at.LAST_NORMAL, at.LAST_TANGENTIAL, at.LAST_TANGENTIAL_B]
 MATRICES = [at.KEPT, at.STIFFNESS, at.MOBILITY, at.LOSS]
 
@@ -65,7 +68,7 @@ def brake(turning: float = 20.0) -> st.System:
 class Pair:
     """The brake some steps after its start, prepared for the march of the package and of C."""
 
-    def __init__(self, system: st.System, before: int) -> None:
+    def __init__(self, system: st.System, before: int, steps: int) -> None:
         arrays = assemble(system, [])
         blocks = blocks_of(arrays, SCHEME, STEP)
         state = state_at_start(in_equilibrium(system, arrays), SCHEME, STEP, blocks, st.GaussSeidel())
@@ -74,14 +77,14 @@ class Pair:
         (state,) = earlier.states
         # Recorded energies start from zero in both.
         state = replace(state, energies=np.zeros(at.ENERGIES))
-        self.before, self.arrays = before, arrays
-        self.case = Case(blocks, state, imposed_on(arrays, blocks.used, before, STEPS, STEP))
+        self.before, self.steps, self.arrays = before, steps, arrays
+        self.case = Case(blocks, state, imposed_on(arrays, blocks.used, before, steps, STEP))
         self.march = March([blocks], [state], STEP, RATIO)
 
     def ours(self) -> Result:
         """March the package and return its results."""
         march = self.march.copy()
-        (chunk,) = march.advance([self.case.imposed], STEPS // RATIO)
+        (chunk,) = march.advance([self.case.imposed], self.steps // RATIO)
         (state,) = march.states
         forces = chunk.contacts[:, :, [at.NORMAL_FORCE, at.TANGENTIAL_FORCE, at.TANGENTIAL_FORCE_B]]
         return {
@@ -91,10 +94,10 @@ class Pair:
             "ledgers": state.energies[[at.CONTACT_WORK, at.FRICTION_LOSS, at.DAMPING_LOSS]],
         }
 
-    def sweeps(self) -> float:
-        """Return the mean number of sweeps in a step."""
+    def steps_of_newton(self) -> float:
+        """Return the mean number of steps of Newton's method in a step."""
         case = self.case
-        (chunk,) = March([case.blocks], [case.state], STEP, 1).advance([case.imposed], STEPS)
+        (chunk,) = March([case.blocks], [case.state], STEP, 1).advance([case.imposed], self.steps)
         return float(chunk.energies[:, at.ITERATIONS].mean())
 
     def order(self) -> np.ndarray:
@@ -142,7 +145,7 @@ class Pair:
         }  # fmt: skip
         given = {
             "first_step": ctypes.c_long(self.before),
-            "steps": ctypes.c_long(STEPS),
+            "steps": ctypes.c_long(self.steps),
             "tolerance": ctypes.c_double(solve.tolerance),
             **{name: ctypes.c_int(size) for name, size in sizes.items()},
             **{name: array.ctypes.data_as(ctypes.c_void_p) for name, array in arrays.items()},
@@ -164,15 +167,24 @@ def agree(found: Result, expected: Result) -> None:
         must_agree(f"{quantity} of the march and of brake.c", values, expected[quantity], TOLERANCE)
 
 
+def agree_in_squeal(found: Result, expected: Result) -> None:
+    """Exit if resultants or losses of the two marches differ."""
+    for quantity in ("forces", "ledgers"):
+        must_agree(f"{quantity} of the march and of brake.c", found[quantity], expected[quantity], CHAOTIC)
+
+
+AGREE = {"sliding": agree, "squealing": agree_in_squeal}
+
+
 def rows() -> Iterator[Ratio | str]:
-    """Yield memory, then speed, sweeps and the ratio to C, sliding and squealing."""
+    """Yield memory, then speed, steps of Newton's method and the ratio to C, sliding and squealing."""
     if not hasattr(os, "wait4"):
         yield "memory: skipped, this system does not report the memory of a process"
     else:
         yield Ratio("peak memory of a fresh process, from meshes to record, over 1 GB", [peak()])
     system = brake()
     for regime, before in BEFORE.items():
-        yield from ratios(regime, Pair(system, before))
+        yield from ratios(regime, Pair(system, before, STEPS[regime]))
 
 
 def ratios(regime: str, pair: Pair) -> Iterator[Ratio | str]:
@@ -183,9 +195,9 @@ def ratios(regime: str, pair: Pair) -> Iterator[Ratio | str]:
     else:
         with tempfile.TemporaryDirectory() as folder:
             compiled = built(Path(folder), SOURCE, vars(kernel))
-            theirs, ours = seconds(lambda: pair.theirs(compiled), pair.ours, agree=agree)
-    yield Ratio(f"{words}: simulated time over wall time of the march", over([STEPS * STEP] * len(ours), ours))
-    yield Ratio(f"{words}: sweeps per step", [pair.sweeps()])
+            theirs, ours = seconds(lambda: pair.theirs(compiled), pair.ours, agree=AGREE[regime])
+    yield Ratio(f"{words}: simulated time over wall time of the march", over([pair.steps * STEP] * len(ours), ours))
+    yield Ratio(f"{words}: steps of Newton's method per step", [pair.steps_of_newton()])
     yield missing or Ratio(f"{words}: time of a step over that of hand-written C", over(ours, theirs), most=BAR)
 
 
@@ -196,6 +208,6 @@ def peak() -> float:
 
 if __name__ == "__main__":
     if "child" in sys.argv:
-        st.simulate(brake(), STEPS * STEP, probes=[], surface_rate="all")
+        st.simulate(brake(), STEPS["squealing"] * STEP, probes=[], surface_rate="all")
     else:
         show(TITLE, rows())

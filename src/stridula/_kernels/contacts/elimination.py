@@ -42,7 +42,9 @@ def reduce_column(matrix: Array, c: int, size: int) -> None:
             for above in range(below):
                 column[k + below] -= column[k + above] * matrix[k + above, k + below]
         rest, four = slice(k + 4, size), column[k : k + 4]
-        subtract_four(column[rest], matrix[k][rest], matrix[k + 1][rest], matrix[k + 2][rest], matrix[k + 3][rest], four)
+        subtract_four(
+            column[rest], matrix[k][rest], matrix[k + 1][rest], matrix[k + 2][rest], matrix[k + 3][rest], four
+        )
         k += 4
     while k < c:
         add_product(column[k + 1 : size], matrix[k, k + 1 : size], -column[k])

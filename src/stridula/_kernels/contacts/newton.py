@@ -38,15 +38,15 @@ from .elimination import add_product, eliminate, substitute
 ) = range(16)
 # Numbers of a contact, at its first number.
 RATIO, STIFFNESS, GIVE, BEYOND, STATE, KEPT, FACTORISED, WAS, ENDS = range(16, 25)
-# Of the run: size of the system whose factors are kept from step to step, 0 without one, and the largest friction of which
-# the direction is not an unknown in it.
+# Of the run: size of the system whose factors are kept from step to step, 0 without one, and the largest friction of
+# which the direction is not an unknown in it.
 FACTORS = 25
 ROWS = 26
 
 # States of a contact in a step: open, held, sliding with its normal force as unknown, sliding with two unknowns.
 OPEN, HELD, SLIDING, TURNING = range(4)
-# Largest friction, in units of the force that undoes the slip, of which the direction is that of the slip, not an unknown:
-# in first steps, which find the states of contacts, and in later ones.
+# Largest friction, in units of the force that undoes the slip, of which the direction is that of the slip, not an
+# unknown: in first steps, which find the states of contacts, and in later ones.
 SWIFT, SWIFTER = 0.25, 1e-4
 # Addition to the diagonal, relative to it: the step has the least change of forces where many close the same gaps.
 GUARD = 1e-5
@@ -110,7 +110,7 @@ def move(face: Face, i: int, changes: Vector) -> None:
 
 @called
 def set_out(face: Face, stiffness: float) -> None:
-    """Set the stiffnesses of the contacts, in units of those of their own compliance, and the motions under the forces."""
+    """Set the stiffnesses, in units of those of the own compliance of a contact, and the motions under the forces."""
     rows = face.rows
     for k in range(rows.shape[1]):
         rows[MOTIONS, k] = rows[FREE, k]
@@ -212,7 +212,7 @@ def number_equations(face: Face) -> int:
 
 @inlined
 def put_equation(face: Face, size: int, place: int, share: float, next_share: float) -> int:
-    """Set the motions in the next equation, shares of a number and of the one after it; return the number of equations."""
+    """Set the motions in the next equation, shares of a number and of that after it; return their number."""
     face.rows[PLACE, size], face.rows[SHARE, size], face.rows[NEXT_SHARE, size] = place, share, next_share
     return size + 1
 

@@ -27,7 +27,7 @@ FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 1, 8
 # Sweeps after which contacts under Coulomb's law are solved together, and contacts under other laws that have broken
 # away in this step are no longer held by their static coefficient; most attempts to solve contacts together.
 PATIENCE, ATTEMPTS = 24, 24
-# Number of contacts from which they are solved together at once.
+# Number of contacts in space from which they are solved together at once.
 MANY = 12
 # Mark of contacts whose friction then acts against the slip of the step alone.
 LATE = 0.25
@@ -245,7 +245,7 @@ def solve_closed(
     rounding = rounding_of_slips(space, carried, sizes, runs)
     made, error, before = runs.zero, choose(touching > 0.5, math.inf, runs.zero), runs.zero + math.inf
     given_up, together = runs.zero, all_under_coulomb(contacts.codes)
-    if together and sizes.contacts >= MANY:
+    if together and sizes.space and sizes.contacts >= MANY:
         found, made = solve_together(contacts, carried, sizes, (0, AT_ONCE), 1.0 - done, timing, runs)
         error, done = choose(found > 0.5, runs.zero, error), choose(found > 0.5, 1.0, done)
         if everywhere(done > 0.5):

@@ -1,8 +1,8 @@
 """Step 5 for all contacts under Coulomb's law together, a run at a time: see `newton`.
 
-A contact that stuck has its slip from the anchor; any other has the slip of this step with a share of the last two, which
-makes the velocity of second order (5c). Where with this share a slip would end or turn round in the step, friction of the
-part before its end is given, an apex, and the slip of the step counts for the rest (5d).
+A contact that stuck has its slip from the anchor; any other has the slip of this step with a share of the last two,
+which makes the velocity of second order (5c). Where with this share a slip would end or turn round in the step, friction
+of the part before its end is given, an apex; the slip of the step counts for the rest (5d).
 """
 
 import math
@@ -15,7 +15,6 @@ from ..lanes.compiled import called, inlined
 from ..lanes.operations import (
     Array,
     Number,
-    Pair,
     Runs,
     component,
     held,
@@ -96,15 +95,14 @@ WAYS = (
 )
 AT_ONCE = 6
 # Largest number of whole steps, of steps that are searched along, and of halvings of one.
-WHOLE_STEPS, STEPS, HALVINGS = 20, 60, 6
+WHOLE_STEPS, STEPS, HALVINGS = 30, 60, 6
 # Residual, relative to the largest force, below which the forces are found, and rounding of motions.
 FOUND, ROUNDING = 1e-12, 1e-15
 # Number of steps in which the residual must fall so far for factors to be kept, fewer where the states are those of the
 # last step: then the next one may use them, too.
 PATIENT, PATIENT_STEADY = 8, 3
-# Most rounds in which slips that end are found; steps in which their ends move, and the change of the forces before
-# them, relative to the largest, with which they stay.
-ROUNDS, MOVES, STAYS = 4, 6, 1e-3
+# Most rounds in which slips that end are found, and the share of steps in which their ends move.
+ROUNDS, MOVING = 4, 0.7
 
 
 @inlined
@@ -150,9 +148,7 @@ def put_contact(face: Face, way: Way, contacts: Contacts, carried: Array, i: int
 
 
 @inlined
-def put_tangent(
-    face: Face, way: Way, contacts: Contacts, carried: Array, i: int, k: int, one: int, runs: Runs
-) -> None:
+def put_tangent(face: Face, way: Way, contacts: Contacts, carried: Array, i: int, k: int, one: int, runs: Runs) -> None:
     """Do `put_contact` for a tangent."""
     now, rows, n, here, base = contacts.now, face.rows, face.first[i], i * at.IN_STEP, i * at.CARRIED
     m, status = n + 1 + k, rows[WAS, n]
@@ -294,29 +290,28 @@ def rounding_of(face: Face) -> float:
 
 
 @called
-def find_forces(
-    face: Face, way: Way, contacts: Contacts, carried: Array, one: int, timing: Timing, runs: Runs
-) -> int:
+def find_forces(face: Face, way: Way, contacts: Contacts, carried: Array, one: int, timing: Timing, runs: Runs) -> int:
     """Change the forces until they are found; return the number of steps, -1 if they are not."""
     set_out(face, way.stiffness)
     factors, rounding, ends_move, before, halvings = face.rows[FACTORS], rounding_of(face), True, math.inf, 0
     # A step may reach one of the last residuals again.
     second, third, fourth, fresh, patience = math.inf, math.inf, math.inf, False, PATIENT
-    for trial in range(STEPS if way.searches else WHOLE_STEPS):
+    steps = STEPS if way.searches else WHOLE_STEPS
+    for trial in range(steps):
         left, largest, moved = evaluate(face, contacts, carried, one, timing.step, ends_move, runs)
-        ends_move = ends_move and trial < MOVES and moved > STAYS * largest
+        # Ends that do not settle stay: then there are forces.
+        ends_move = ends_move and moved > FOUND * largest and trial < MOVING * steps
         # Where many forces close the same gaps, rounding may leave more than is asked for.
         stalls = left <= timing.tolerance * largest and left > 0.1 * before
         if (stalls or left <= FOUND * largest + rounding) and not ends_move:
             return trial
         if not left < math.inf:
             break
-        if way.searches and not left <= max(before, second, third, fourth):
-            # A step that nowhere falls is taken short.
-            if halvings < HALVINGS:
-                halve(face)
-                halvings += 1
-                continue
+        # A step along which the residual nowhere falls is taken short.
+        if way.searches and halvings < HALVINGS and not left <= max(before, second, third, fourth):
+            halve(face)
+            halvings += 1
+            continue
         alike = factors[0] > 0.0 and same_states(face)
         if trial == 0:
             patience = PATIENT_STEADY if alike else PATIENT
@@ -373,10 +368,8 @@ def accept(face: Face, contacts: Contacts, one: int, runs: Runs) -> None:
 
 
 @called
-def seek(
-    face: Face, way: Way, contacts: Contacts, carried: Array, one: int, timing: Timing, runs: Runs
-) -> int:
-    """Seek the forces of all contacts of the run in lane `one`; return the number of steps, -1 if they are not found."""
+def seek(face: Face, way: Way, contacts: Contacts, carried: Array, one: int, timing: Timing, runs: Runs) -> int:
+    """Seek the forces of all contacts of the run in lane `one`; return the number of steps, -1 if none are found."""
     for i in range(face.first.size - 1):
         put_contact(face, way, contacts, carried, i, one, runs)
     made = 0
@@ -393,7 +386,13 @@ def seek(
 
 @called
 def solve_together(
-    contacts: Contacts, carried: Array, sizes: Sizes, attempts: Pair, tried: Number, timing: Timing, runs: Runs
+    contacts: Contacts,
+    carried: Array,
+    sizes: Sizes,
+    attempts: tuple[int, int],
+    tried: Number,
+    timing: Timing,
+    runs: Runs,
 ) -> tuple[Number, Number]:
     """Seek the forces of all contacts in runs `tried` in some of the ways; return where they are found, and steps."""
     found, made, numbers = runs.zero, runs.zero, sizes.rows

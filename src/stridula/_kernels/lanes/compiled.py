@@ -18,6 +18,8 @@ _njit: Any = numba.njit
 STRICT: dict[str, Any] = {"cache": True, "fastmath": False, "error_model": "numpy", "no_cfunc_wrapper": True}
 # A wrapper for callers in Python takes a sixth of the compilation.
 WITHOUT_WRAPPER: dict[str, Any] = {**STRICT, "_nrt": False, "no_cpython_wrapper": True}
+# Its type in the stubs lacks some options, too.
+COUNTED: Any = {"_nrt": True}
 INLINED: dict[str, Any] = {**WITHOUT_WRAPPER, "forceinline": True}
 
 
@@ -67,7 +69,7 @@ def overloaded(target: Callable[..., Any]) -> Callable[[F], F]:
         names = [one.replace(annotation=one.empty) for one in inspect.signature(choose).parameters.values()]
         chosen.__signature__ = inspect.Signature(names)  # type: ignore[attr-defined]
         # Some return parts of arrays, for which numba counts references.
-        overload(target, jit_options={"_nrt": True})(chosen)
+        overload(target, jit_options=COUNTED)(chosen)
         return choose
 
     return declare
