@@ -1,8 +1,8 @@
 """Step 5 for all contacts under Coulomb's law together, a run at a time: see `newton`.
 
 A contact that stuck has its slip from the anchor; any other has the slip of this step with a share of the last two,
-which makes the velocity of second order (5c). Where with this share a slip would end or turn round in the step, friction
-of the part before its end is given, an apex; the slip of the step counts for the rest (5d).
+which makes the velocity of second order (5c). Where with this share a slip would end or turn round in the step, the
+friction of the part before its end is given, an apex; the slip of the step counts for the rest (5d).
 """
 
 import math
