@@ -189,7 +189,7 @@ def rows() -> Iterator[Ratio | str]:
 
 def ratios(regime: str, pair: Pair) -> Iterator[Ratio | str]:
     """Yield the results of the marches of a pair."""
-    words = f"{len(pair.arrays.contacts) // 2} points, {pair.arrays.mode_count} modes, {regime}"
+    words = f"{len(pair.arrays.contacts)} points, {pair.arrays.mode_count} modes, {regime}"
     if missing := without_gcc():
         (ours,) = seconds(pair.ours)
     else:

@@ -20,35 +20,35 @@ STEP = 5e-6
 
 
 def rows() -> Iterator[Ratio]:
-    """Yield speeds of the rigs and of a face on a disc, its sweeps, and the cost of turning."""
+    """Yield speeds of the rigs and of a face on a disc, its steps, and the cost of turning."""
     for name in ("pin-on-disc", "pad-on-disc"):
         system = st.load_scenario(name).system
         contacts = len(system.contacts)
         yield Ratio(f"{name}, {contacts} contacts: simulated time over wall time", speeds(system)[0])
     for divisions in LININGS:
         system = lined(divisions)
-        fast, sweeps = speeds(system)
+        fast, made = speeds(system)
         words = f"a lining of {len(system.contacts)} points on a disc that turns"
         yield Ratio(f"{words}: simulated time over wall time", fast)
-        yield Ratio(f"{words}: sweeps per step", sweeps)
+        yield Ratio(f"{words}: sweeps or steps of Newton's method per step", made)
     brake = st.load_scenario("brake", PADS).system
-    fast, sweeps = speeds(brake)
+    fast, made = speeds(brake)
     words = f"brake, {len(brake.contacts)} points on two faces"
     yield Ratio(f"{words}: simulated time over wall time", fast)
-    yield Ratio(f"{words}: sweeps per step", sweeps)
+    yield Ratio(f"{words}: sweeps or steps of Newton's method per step", made)
     yield Ratio("a rider on a turning disc, over the same on a disc at rest", turning())
 
 
 def speeds(system: st.System) -> tuple[list[float], list[float]]:
-    """Return simulated time over wall time in each repeat, and the mean number of sweeps in a step."""
-    found, sweeps = [], []
+    """Return simulated time over wall time, and the mean number of sweeps or of steps of Newton's method in a step."""
+    found, made = [], []
     for repeat in range(WARM_UP + REPEATS):
         began = time.perf_counter()
         run = st.simulate(system, DURATION, probes=[])
         if repeat >= WARM_UP:
             found.append(DURATION / (time.perf_counter() - began))
-            sweeps.append(float(run.contact_sweeps.mean()))
-    return found, sweeps
+            made.append(float(run.contact_sweeps.mean()))
+    return found, made
 
 
 def disc(turning: float) -> st.AxisymmetricBody:
