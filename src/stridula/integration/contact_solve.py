@@ -11,8 +11,8 @@ from ..checks import count, within
 class GaussSeidel:
     """Block Gauss-Seidel with the exact solution of each contact in turn, until no force changes.
 
-    Twelve contacts or more in space, all under Coulomb's law, are first solved together by Newton's method, to 1e-12 of
-    the largest force, or to the tolerance where rounding leaves more.
+    Sixteen contacts or more in space, all under Coulomb's law, are first solved together by Newton's method, to 1e-12
+    of the largest force, or to the tolerance where rounding leaves more.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 1, 8
 # away in this step are no longer held by their static coefficient; most attempts to solve contacts together.
 PATIENCE, ATTEMPTS = 24, 24
 # Number of contacts in space from which they are solved together at once.
-MANY = 12
+MANY = 16
 # Mark of contacts whose friction then acts against the slip of the step alone.
 LATE = 0.25
 # Tolerance of the gaps and slips that remain, relative to those that the forces undo, over that of the forces.

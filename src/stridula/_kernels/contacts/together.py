@@ -101,8 +101,9 @@ FOUND, ROUNDING = 1e-12, 1e-15
 # Number of steps in which the residual must fall so far for factors to be kept, fewer where the states are those of the
 # last step: then the next one may use them, too.
 PATIENT, PATIENT_STEADY = 8, 3
-# Most rounds in which slips that end are found, and the share of steps in which their ends move.
-ROUNDS, MOVING = 4, 0.7
+# Most rounds in which slips that end are found; the share of steps in which their ends move, and the change of forces,
+# relative to the largest, at which they are settled.
+ROUNDS, MOVING, SETTLED = 4, 0.7, 1e-3
 
 
 @inlined
@@ -263,6 +264,16 @@ def evaluate(
 
 
 @called
+def forget_ends(face: Face) -> None:
+    """Let the slip of the step alone count where slips end: many that end together may not settle."""
+    for i in range(face.first.size - 1):
+        if face.rows[ENDS, face.first[i]] > 0.0:
+            face.rows[ENDS, face.first[i]] = 1.0
+            for k in range(face.first[i], face.first[i + 1]):
+                face.rows[APEX, k] = 0.0
+
+
+@called
 def keep_old(face: Face) -> None:
     """Keep forces and motions before a step."""
     rows = face.rows
@@ -299,8 +310,10 @@ def find_forces(face: Face, way: Way, contacts: Contacts, carried: Array, one: i
     steps = STEPS if way.searches else WHOLE_STEPS
     for trial in range(steps):
         left, largest, moved = evaluate(face, contacts, carried, one, timing.step, ends_move, runs)
-        # Ends that do not settle stay: then there are forces.
-        ends_move = ends_move and moved > FOUND * largest and trial < MOVING * steps
+        if ends_move and trial > MOVING * steps and moved > SETTLED * largest:
+            forget_ends(face)
+            continue
+        ends_move = ends_move and moved > FOUND * largest and trial <= MOVING * steps
         # Where many forces close the same gaps, rounding may leave more than is asked for.
         stalls = left <= timing.tolerance * largest and left > 0.1 * before
         if (stalls or left <= FOUND * largest + rounding) and not ends_move:
