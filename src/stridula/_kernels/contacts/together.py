@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from ..contact.exact import SLIDING, STICKING
 from ..contact.pressing import share_of
+from ..contact.solves import strayed
 from ..contact.yielding import give_of, path_of, yields_of
 from ..lanes.compiled import called, inlined
 from ..lanes.operations import (
@@ -101,6 +102,8 @@ FOUND, ROUNDING = 1e-12, 1e-15
 # Number of steps in which the residual must fall so far for factors to be kept, fewer where the states are those of the
 # last step: then the next one may use them, too.
 PATIENT, PATIENT_STEADY = 8, 3
+# Whether a slip ends in the step, and with forces before its end.
+GOES_ON, ENDS_PLAINLY, ENDS_WITH_APEX = range(3)
 # Most rounds in which slips that end are found; the share of steps in which their ends move, and the change of forces,
 # relative to the largest, at which they are settled.
 ROUNDS, MOVING, SETTLED = 4, 0.7, 1e-3
@@ -140,7 +143,8 @@ def put_contact(face: Face, way: Way, contacts: Contacts, carried: Array, i: int
     status = number_of(carried, base + at.STATUS, one, runs)
     was_closed = status > 0.5 * STICKING
     rows[RATIO, n] = number_of(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, one, runs)
-    rows[WAS, n], rows[ENDS, n], rows[GIVE, n], rows[BEYOND, n], rows[APEX, n] = status, 0.0, 0.0, 0.0, 0.0
+    rows[WAS, n], rows[ENDS, n] = status, GOES_ON
+    rows[GIVE, n], rows[BEYOND, n], rows[APEX, n] = 0.0, 0.0, 0.0
     last = number_of(carried, base + at.LAST_NORMAL, one, runs) if was_closed else 0.0
     rows[FORCES, n] = last if way.again else number_of(now, here + at.NORMAL_NOW, one, runs)
     rows[FREE, n] = number_of(now, here + at.FREE_GAP, one, runs)
@@ -159,12 +163,11 @@ def put_tangent(face: Face, way: Way, contacts: Contacts, carried: Array, i: int
     rows[FREE, m] = number_of(now, here + column(k, at.FREE_SLIP, at.FREE_SLIP_B), one, runs)
     last = number_of(carried, base + column(k, at.LAST_SLIP, at.LAST_SLIP_B), one, runs)
     earlier = number_of(carried, base + column(k, at.EARLIER_SLIP, at.EARLIER_SLIP_B), one, runs)
-    rows[LAST, m], rows[APEX, m], rows[SHIFT, m], rows[WAY, m] = last, 0.0, 0.0, 0.0
-    if abs(status - STICKING) < 0.5:
-        material = number_of(carried, base + column(k, at.MATERIAL, at.MATERIAL_B), one, runs)
-        rows[SHIFT, m] = material - number_of(carried, base + column(k, at.ANCHOR, at.ANCHOR_B), one, runs)
-    elif way.second_order and face.first[i + 1] - n > 2:
-        rows[SHIFT, m] = (6.0 * last + earlier) / 9.0
+    material, anchor = column(k, at.MATERIAL, at.MATERIAL_B), column(k, at.ANCHOR, at.ANCHOR_B)
+    shift = lane(strayed(carried, base, material, anchor, runs), one)
+    if way.second_order and face.first[i + 1] - n > 2 and abs(status - STICKING) > 0.5:
+        shift = (6.0 * last + earlier) / 9.0
+    rows[LAST, m], rows[APEX, m], rows[SHIFT, m], rows[WAY, m] = last, 0.0, shift, 0.0
 
 
 @called
@@ -228,7 +231,7 @@ def find_ends(face: Face) -> int:
     for i in range(face.first.size - 1):
         n, own = face.first[i], face.first[i + 1] - face.first[i]
         stuck = abs(rows[WAS, n] - STICKING) < 0.5
-        if rows[ENDS, n] > 0.0 or stuck or rows[STATE, n] == OPEN:
+        if rows[ENDS, n] != GOES_ON or stuck or rows[STATE, n] == OPEN:
             continue
         slid, size, forward, on = rows[WAS, n] > SLIDING - 0.5, 0.0, 0.0, 0.0
         for k in range(n + 1, n + own):
@@ -242,7 +245,7 @@ def find_ends(face: Face) -> int:
             continue
         for k in range(n + 1, n + own):
             rows[SHIFT, k] = 0.0
-        rows[ENDS, n] = 2.0 if slid and size > 0.0 else 1.0
+        rows[ENDS, n] = ENDS_WITH_APEX if slid and size > 0.0 else ENDS_PLAINLY
         found += 1
     return found
 
@@ -256,7 +259,7 @@ def evaluate(
     for i in range(face.first.size - 1):
         n = face.first[i]
         soften(face, contacts, carried, i, one, step, runs)
-        if ends_move and rows[ENDS, n] > 1.5:
+        if ends_move and rows[ENDS, n] == ENDS_WITH_APEX:
             moved = max(moved, end_slip(face, i))
         left += judge(face, i, rows[FACTORS, 1])
         largest = max(largest, rows[FORCES, n])
@@ -267,8 +270,8 @@ def evaluate(
 def forget_ends(face: Face) -> None:
     """Let the slip of the step alone count where slips end: many that end together may not settle."""
     for i in range(face.first.size - 1):
-        if face.rows[ENDS, face.first[i]] > 0.0:
-            face.rows[ENDS, face.first[i]] = 1.0
+        if face.rows[ENDS, face.first[i]] == ENDS_WITH_APEX:
+            face.rows[ENDS, face.first[i]] = ENDS_PLAINLY
             for k in range(face.first[i], face.first[i + 1]):
                 face.rows[APEX, k] = 0.0
 
@@ -330,8 +333,10 @@ def find_forces(face: Face, way: Way, contacts: Contacts, carried: Array, one: i
             patience = PATIENT_STEADY if alike else PATIENT
         if not alike or left * (left / before) ** patience > FOUND * largest:
             # With the directions of friction as unknowns where these factors, of this step, are too slow.
-            factors[1] = SWIFTER if alike and fresh else SWIFT
-            left, largest, moved = evaluate(face, contacts, carried, one, timing.step, False, runs)
+            swift = SWIFTER if alike and fresh else SWIFT
+            if swift != factors[1]:
+                factors[1] = swift
+                left, largest, _ = evaluate(face, contacts, carried, one, timing.step, False, runs)
             size = number_equations(face)
             fresh = factorise(face, size)
             factors[0] = float(size) if fresh else 0.0

@@ -18,8 +18,6 @@ _njit: Any = numba.njit
 STRICT: dict[str, Any] = {"cache": True, "fastmath": False, "error_model": "numpy", "no_cfunc_wrapper": True}
 # A wrapper for callers in Python takes a sixth of the compilation.
 WITHOUT_WRAPPER: dict[str, Any] = {**STRICT, "_nrt": False, "no_cpython_wrapper": True}
-# Its type in the stubs lacks some options, too.
-COUNTED: Any = {"_nrt": True}
 INLINED: dict[str, Any] = {**WITHOUT_WRAPPER, "forceinline": True}
 
 
@@ -56,8 +54,12 @@ def called(function: F) -> F:
     return cast("F", _njit(**WITHOUT_WRAPPER)(function))
 
 
-def overloaded(target: Callable[..., Any]) -> Callable[[F], F]:
-    """Do `numba.extending.overload`, which would compare the annotations of both functions."""
+def overloaded(target: Callable[..., Any], returns_arrays: bool = False) -> Callable[[F], F]:
+    """Do `numba.extending.overload`, which would compare the annotations of both functions.
+
+    Only where references are counted does numba let a function return a part of an array.
+    """
+    options: Any = {"_nrt": True} if returns_arrays else {}
 
     def declare(choose: F) -> F:
         def chosen(*kinds: Any) -> Any:
@@ -68,8 +70,7 @@ def overloaded(target: Callable[..., Any]) -> Callable[[F], F]:
 
         names = [one.replace(annotation=one.empty) for one in inspect.signature(choose).parameters.values()]
         chosen.__signature__ = inspect.Signature(names)  # type: ignore[attr-defined]
-        # Some return parts of arrays, for which numba counts references.
-        overload(target, jit_options=COUNTED)(chosen)
+        overload(target, jit_options=options)(chosen)
         return choose
 
     return declare

@@ -234,7 +234,7 @@ def _set_component(rows: Any, k: Any, row: Any, runs: Any, value: Any) -> Any:
     return implementation
 
 
-@overloaded(rows_of_run)
+@overloaded(rows_of_run, returns_arrays=True)
 def _rows_of_run(rows: Any, first: Any, one: Any, runs: Any) -> Any:
     if not of_one(runs):
         return lambda rows, first, one, runs: rows[first:, :, one]
