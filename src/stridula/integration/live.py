@@ -192,6 +192,8 @@ class LiveMarch:
         """
         now, ratio = self.now, self.ratio
         imposed = now.impositions.on(now.sample * ratio, samples * ratio)
+        # A return to this moment finds the same.
+        now.march.forget()
         (chunk,) = now.march.advance([imposed], samples)
         done, ended = now.belief.of(chunk)
         time = (now.sample + np.arange(1, done + 1)) * self.interval

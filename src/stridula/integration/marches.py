@@ -11,6 +11,7 @@ from typing import Any
 import numba
 import numpy as np
 
+from .._kernels.contacts.newton import FACTORS
 from .._kernels.lanes.vectors import LANES
 from .._kernels.layout import columns as at
 from .._kernels.layout.parts import Carried, Contacts, Imposed, Modes, Parts, Paths, Probes, Records, Timing, Turning
@@ -276,6 +277,12 @@ class March:
         energies = np.stack([state.energies for state in states], axis=1)
         for own, given in zip(self.carried, (carried, carried, energies), strict=True):
             own.reshape(given.shape)[:] = given
+        self.forget()
+
+    def forget(self) -> None:
+        """Let the next step depend on the state alone, to the last bit: factors of earlier equations are not used."""
+        if self.contacts.dense.size:
+            self.contacts.dense[:, self.layout.sizes.rows + FACTORS] = 0.0
 
     def copy(self) -> March:
         """Return a copy in the same state."""
