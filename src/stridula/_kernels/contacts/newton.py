@@ -48,10 +48,6 @@ OPEN, HELD, SLIDING, TURNING = range(4)
 # Largest friction, in units of the force that undoes the slip, of which the direction is that of the slip, not an
 # unknown: in first steps, which find the states of contacts, and in later ones.
 SWIFT, SWIFTER = 0.25, 1e-4
-# Addition to the diagonal, relative to it: the step has the least change of forces where many close the same gaps.
-GUARD = 1e-5
-
-
 # A normal force and tangential ones, or changes of them; the last is zero in the plane.
 Vector = tuple[float, float, float]
 
@@ -248,8 +244,12 @@ def turning_stiffness(face: Face, n: int) -> float:
 
 
 @called
-def factorise(face: Face, size: int) -> bool:
-    """Set the matrix of contacts in their states, and factorise it; return whether it is regular."""
+def factorise(face: Face, size: int, guard: float) -> bool:
+    """Set the matrix of contacts in their states, and factorise it; return whether it is regular.
+
+    The guard is added to the diagonal, relative to it: the step has the least change of forces where many close the
+    same gaps.
+    """
     rows, matrix = face.rows, face.matrix
     for i in range(face.first.size - 1):
         n, state, two = face.first[i], rows[STATE, face.first[i]], face.first[i + 1] - face.first[i] > 2
@@ -260,14 +260,14 @@ def factorise(face: Face, size: int) -> bool:
         way, aside = rows[WAY, n + 1], rows[WAY, n + 2] if two else 0.0
         pulled = (0.0, 0.0) if state == HELD else (mu * way, mu * aside)
         put_column(face, at, size, n, two, (1.0, pulled[0], pulled[1]))
-        matrix[at, at] += rows[GIVE, n] + GUARD * (mean + rows[GIVE, n])
+        matrix[at, at] += rows[GIVE, n] + guard * (mean + rows[GIVE, n])
         if state == HELD:
             for k in range(1, face.first[i + 1] - n):
                 put_column(face, at + k, size, n, two, (0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0))
-                matrix[at + k, at + k] += GUARD * mean
+                matrix[at + k, at + k] += guard * mean
         elif state == TURNING:
             put_column(face, at + 1, size, n, two, (0.0, -aside, way))
-            matrix[at + 1, at + 1] += turning_stiffness(face, n) + GUARD * mean
+            matrix[at + 1, at + 1] += turning_stiffness(face, n) + guard * mean
     return eliminate(matrix, rows[PIVOT], size)
 
 

@@ -246,8 +246,8 @@ def solve_closed(
     made, error, before = runs.zero, choose(touching > 0.5, math.inf, runs.zero), runs.zero + math.inf
     given_up, together = runs.zero, all_under_coulomb(contacts.codes)
     if together and sizes.space and sizes.contacts >= MANY:
-        found, made = solve_together(contacts, carried, sizes, (0, AT_ONCE), 1.0 - done, timing, runs)
-        error, done = choose(found > 0.5, runs.zero, error), choose(found > 0.5, 1.0, done)
+        found, made, left = solve_together(contacts, carried, sizes, (0, AT_ONCE), 1.0 - done, timing, runs)
+        error, done = choose(found > 0.5, left, error), choose(found > 0.5, 1.0, done)
         if everywhere(done > 0.5):
             return made, error
     for sweep in range(timing.sweeps):
@@ -288,8 +288,8 @@ def solve_closed(
         if together and attempt % SWEEPS_PER_DIRECT_SOLVE == 0 and 0 <= attempt < ATTEMPTS * SWEEPS_PER_DIRECT_SOLVE:
             attempt //= SWEEPS_PER_DIRECT_SOLVE
             tried = choose(done > 0.5, runs.zero, 1.0)
-            found, _ = solve_together(contacts, carried, sizes, (attempt, attempt + 1), tried, timing, runs)
-            error, done = choose(found > 0.5, runs.zero, error), choose(found > 0.5, 1.0, done)
+            found, _, left = solve_together(contacts, carried, sizes, (attempt, attempt + 1), tried, timing, runs)
+            error, done = choose(found > 0.5, left, error), choose(found > 0.5, 1.0, done)
             before = runs.zero + math.inf
             if everywhere(done > 0.5):
                 break

@@ -74,39 +74,54 @@ class Way(NamedTuple):
         Whether slips of the last steps count.
     searches : bool
         Whether steps are searched along. Whole steps pass kinks of the projection where a search would stop.
+    steps : int
+        Largest number of steps.
+    guard : float
+        Addition to the diagonal, see `factorise`, or 0 for a share of the residual. A larger one passes more kinks, and
+        converges more slowly where equations are nearly singular.
     """
 
     stiffness: float
     again: bool
     second_order: bool
     searches: bool
+    steps: int
+    guard: float
 
 
-# Ways that are tried in turn; those before any sweep.
+# Ways that are tried in turn; those before any sweep, of which the last may leave a residual.
 WAYS = (
-    Way(1.0, True, True, False),
-    Way(3.0, True, True, True),
-    Way(1.0, True, True, True),
-    Way(3.0, True, False, True),
-    Way(0.3, True, True, True),
-    Way(1.0, True, False, True),
-    Way(3.0, False, False, True),
-    Way(10.0, True, False, False),
-    Way(10.0, False, False, True),
+    Way(1.0, True, True, False, 40, 0.0),
+    Way(3.0, True, True, True, 60, 0.0),
+    Way(1.0, True, True, True, 60, 0.0),
+    Way(3.0, True, False, True, 100, 1e-6),
+    Way(1.0, True, False, True, 100, 1e-6),
+    Way(1.0, True, False, False, 100, 1e-4),
+    Way(0.3, True, True, True, 60, 0.0),
+    Way(3.0, False, False, True, 60, 1e-6),
+    Way(10.0, True, False, False, 40, 0.0),
+    Way(10.0, False, False, True, 60, 0.0),
 )
 AT_ONCE = 6
-# Largest number of whole steps, of steps that are searched along, and of halvings of one.
-WHOLE_STEPS, STEPS, HALVINGS = 30, 60, 6
+# Residual, relative to the largest force, that it may leave: the step is then counted as unsolved.
+CLOSE = 1e-6
+# Share of the residual, relative to the largest force, that is added to the diagonal, and the limits of this addition.
+GUARD, LEAST_GUARD, MOST_GUARD = 0.1, 1e-13, 1e-5
+# Largest number of halvings of a step.
+HALVINGS = 6
 # Residual, relative to the largest force, below which the forces are found, and rounding of motions.
 FOUND, ROUNDING = 1e-12, 1e-15
 # Number of steps in which the residual must fall so far for factors to be kept, fewer where the states are those of the
 # last step: then the next one may use them, too.
 PATIENT, PATIENT_STEADY = 8, 3
+# Steps after which directions of friction are unknowns anyhow.
+STRICT = 12
 # Whether a slip ends in the step, and with forces before its end.
 GOES_ON, ENDS_PLAINLY, ENDS_WITH_APEX = range(3)
-# Most rounds in which slips that end are found; the share of steps in which their ends move, and the change of forces,
-# relative to the largest, at which they are settled.
-ROUNDS, MOVING, SETTLED = 4, 0.7, 1e-3
+# Most rounds in which slips that end are found. Their ends move in each of the first steps, then where the residual has
+# fallen to a share of the last change of forces before them, for a share of the steps; the change, relative to the
+# largest force, at which they are settled.
+ROUNDS, FREELY, FALLEN, MOVING, SETTLED = 4, 8, 0.1, 0.7, 1e-3
 
 
 @inlined
@@ -304,23 +319,30 @@ def rounding_of(face: Face) -> float:
 
 
 @called
-def find_forces(face: Face, way: Way, contacts: Contacts, carried: Array, one: int, timing: Timing, runs: Runs) -> int:
-    """Change the forces until they are found; return the number of steps, -1 if they are not."""
+def find_forces(
+    face: Face, way: Way, contacts: Contacts, carried: Array, one: int, timing: Timing, runs: Runs
+) -> tuple[int, float]:
+    """Change the forces until they are found; return the number of steps, and the residual, 0 if they are."""
     set_out(face, way.stiffness)
     factors, rounding, ends_move, before, halvings = face.rows[FACTORS], rounding_of(face), True, math.inf, 0
     # A step may reach one of the last residuals again.
     second, third, fourth, fresh, patience = math.inf, math.inf, math.inf, False, PATIENT
-    steps = STEPS if way.searches else WHOLE_STEPS
-    for trial in range(steps):
-        left, largest, moved = evaluate(face, contacts, carried, one, timing.step, ends_move, runs)
-        if ends_move and trial > MOVING * steps and moved > SETTLED * largest:
+    moved, missed = 0.0, math.inf
+    for trial in range(way.steps):
+        move_now = ends_move and (trial < FREELY or before <= FALLEN * moved)
+        left, largest, farther = evaluate(face, contacts, carried, one, timing.step, move_now, runs)
+        if move_now:
+            moved, second, third, fourth = farther, math.inf, math.inf, math.inf
+        if ends_move and trial > MOVING * way.steps and moved > SETTLED * largest:
             forget_ends(face)
+            ends_move = False
             continue
-        ends_move = ends_move and moved > FOUND * largest and trial <= MOVING * steps
+        ends_move = ends_move and moved > FOUND * largest and trial <= MOVING * way.steps
         # Where many forces close the same gaps, rounding may leave more than is asked for.
         stalls = left <= timing.tolerance * largest and left > 0.1 * before
         if (stalls or left <= FOUND * largest + rounding) and not ends_move:
-            return trial
+            return trial, 0.0
+        missed = left / largest if largest > 0.0 else math.inf
         if not left < math.inf:
             break
         # A step along which the residual nowhere falls is taken short.
@@ -333,12 +355,13 @@ def find_forces(face: Face, way: Way, contacts: Contacts, carried: Array, one: i
             patience = PATIENT_STEADY if alike else PATIENT
         if not alike or left * (left / before) ** patience > FOUND * largest:
             # With the directions of friction as unknowns where these factors, of this step, are too slow.
-            swift = SWIFTER if alike and fresh else SWIFT
+            swift = SWIFTER if trial >= STRICT or (alike and fresh) else SWIFT
             if swift != factors[1]:
                 factors[1] = swift
                 left, largest, _ = evaluate(face, contacts, carried, one, timing.step, False, runs)
             size = number_equations(face)
-            fresh = factorise(face, size)
+            guard = max(LEAST_GUARD, min(GUARD * missed, MOST_GUARD)) if way.guard == 0.0 else way.guard
+            fresh = factorise(face, size, guard)
             factors[0] = float(size) if fresh else 0.0
             if not fresh:
                 break
@@ -347,7 +370,7 @@ def find_forces(face: Face, way: Way, contacts: Contacts, carried: Array, one: i
             keep_old(face)
         settle(face, 0.1 * FOUND * largest)
         take_step(face, int(factors[0]))
-    return -1
+    return way.steps, missed
 
 
 @called
@@ -386,20 +409,25 @@ def accept(face: Face, contacts: Contacts, one: int, runs: Runs) -> None:
 
 
 @called
-def seek(face: Face, way: Way, contacts: Contacts, carried: Array, one: int, timing: Timing, runs: Runs) -> int:
-    """Seek the forces of all contacts of the run in lane `one`; return the number of steps, -1 if none are found."""
+def seek(
+    face: Face, way: Way, contacts: Contacts, carried: Array, most: float, one: int, timing: Timing, runs: Runs
+) -> tuple[int, float]:
+    """Seek the forces of all contacts of the run in lane `one`, with a residual of `most` at most.
+
+    Return the number of steps, -1 if there are none, and the residual.
+    """
     for i in range(face.first.size - 1):
         put_contact(face, way, contacts, carried, i, one, runs)
-    made = 0
+    made, missed = 0, 0.0
     for _ in range(ROUNDS):
-        steps = find_forces(face, way, contacts, carried, one, timing, runs)
-        if steps < 0:
-            return -1
+        steps, missed = find_forces(face, way, contacts, carried, one, timing, runs)
+        if not missed <= most:
+            return -1, missed
         made += steps
         if not way.second_order or find_ends(face) == 0:
             break
     accept(face, contacts, one, runs)
-    return made
+    return made, missed
 
 
 @called
@@ -411,17 +439,22 @@ def solve_together(
     tried: Number,
     timing: Timing,
     runs: Runs,
-) -> tuple[Number, Number]:
-    """Seek the forces of all contacts in runs `tried` in some of the ways; return where they are found, and steps."""
-    found, made, numbers = runs.zero, runs.zero, sizes.rows
+) -> tuple[Number, Number, Number]:
+    """Seek the forces of all contacts in runs `tried` in some of the ways.
+
+    Return where they are found, the number of steps, and the residual, relative to the largest force.
+    """
+    found, made, left, numbers = runs.zero, runs.zero, runs.zero, sizes.rows
     for one in range(lanes_of(runs.zero)):
         if lane(tried, one) > 0.5:
             dense = contacts.dense[runs.first + one]
             soft = rows_of_run(contacts.faces, COMPLIANCE, one, runs)
             face = Face(soft, dense[:numbers], dense[numbers:], contacts.rows)
             for attempt in range(attempts[0], attempts[1]):
-                steps = seek(face, WAYS[attempt % len(WAYS)], contacts, carried, one, timing, runs)
+                most = CLOSE if attempt == AT_ONCE - 1 else 0.0
+                steps, missed = seek(face, WAYS[attempt % len(WAYS)], contacts, carried, most, one, timing, runs)
                 if steps >= 0:
                     found, made = with_lane(found, one, 1.0), with_lane(made, one, float(steps))
+                    left = with_lane(left, one, missed)
                     break
-    return found, made
+    return found, made, left
