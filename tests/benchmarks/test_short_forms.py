@@ -8,9 +8,11 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import stridula
@@ -21,7 +23,7 @@ BENCHMARKS = sorted(
     path for path in FOLDER.glob("*.py") if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
 )
 # Siconos runs under another Python without the package; the suite repeats all sections.
-APART = ("siconos_march.py", "siconos_cones.py", "suite.py")
+APART = ("siconos_march.py", "siconos_cones.py", "siconos_faces.py", "suite.py")
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -146,6 +148,7 @@ WRONG_SIDES = {
         "march_of(kind, few[:: 1 - 2 * (kind is CudaMarch)], at)",
         "motion on the card",
     ),
+    "random_faces.py": ("marched = solve(problem)", "marched = solve(plain)", "forces of all faces"),
 }
 
 
@@ -173,3 +176,20 @@ def test_shares_of_damped_contacts_that_open_while_indented_are_shares(monkeypat
     run = st.simulate(system, 600 * step, step=step, sample_rate=1.0 / step, probes=[])
     assert run.status_share.values.min() >= 0.0
     assert run.status_share.values.max() <= 1.0
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_forces_of_faces_that_break_a_law_are_told(seed, monkeypatch):
+    """Larger forces, one less, other friction, friction along the slip, and none; those of the kernel break none."""
+    monkeypatch.setattr(sys, "argv", ["", "--short"])
+    monkeypatch.syspath_prepend(FOLDER)
+    problems, laws = import_module("face_problems"), import_module("face_laws")
+    _, problem = problems.drawn(seed)
+    forces = problems.solve(problem).forces
+    assert laws.judge(problem, forces)[1].max() < 1e-9
+    largest = np.argmax(forces[:, 0])
+    without = np.where(np.arange(len(forces))[:, None] == largest, 0.0, forces)
+    ways = [1.0, *[-1.0] * (forces.shape[1] - 1)]
+    for wrong in (1.001 * forces, without, forces * ways, np.full_like(forces, np.nan), 0.0 * forces):
+        assert not laws.judge(problem, wrong)[0].max() < 1e-6
+    assert laws.judge(replace(problem, friction=0.9 * problem.friction), forces)[0].max() > 1e-6
