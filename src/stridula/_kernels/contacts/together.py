@@ -91,16 +91,16 @@ class Way(NamedTuple):
 
 # Ways that are tried in turn; those before any sweep, of which the last may leave a residual.
 WAYS = (
-    Way(1.0, True, True, False, 40, 0.0),
+    Way(1.0, True, True, False, 60, 0.0),
     Way(3.0, True, True, True, 60, 0.0),
     Way(1.0, True, True, True, 60, 0.0),
     Way(3.0, True, False, True, 100, 1e-6),
     Way(1.0, True, False, True, 100, 1e-6),
     Way(1.0, True, False, False, 100, 1e-4),
-    Way(0.3, True, True, True, 60, 0.0),
-    Way(3.0, False, False, True, 60, 1e-6),
-    Way(10.0, True, False, False, 40, 0.0),
-    Way(10.0, False, False, True, 60, 0.0),
+    Way(0.3, True, True, True, 60, 1e-5),
+    Way(3.0, False, False, True, 60, 1e-5),
+    Way(10.0, True, False, False, 40, 1e-5),
+    Way(10.0, False, False, True, 60, 1e-5),
 )
 AT_ONCE = 6
 # Residual, relative to the largest force, that it may leave: the step is then counted as unsolved.
@@ -121,7 +121,7 @@ GOES_ON, ENDS_PLAINLY, ENDS_WITH_APEX = range(3)
 # Most rounds in which slips that end are found. Their ends move in each of the first steps, then where the residual has
 # fallen to a share of the last change of forces before them, for a share of the steps; the change, relative to the
 # largest force, at which they are settled.
-ROUNDS, FREELY, FALLEN, MOVING, SETTLED = 4, 8, 0.1, 0.7, 1e-3
+ROUNDS, FREELY, FALLEN, MOVING, SETTLED = 4, 8, 0.1, 0.7, 1e-8
 
 
 @inlined
@@ -327,9 +327,9 @@ def find_forces(
     factors, rounding, ends_move, before, halvings = face.rows[FACTORS], rounding_of(face), True, math.inf, 0
     # A step may reach one of the last residuals again.
     second, third, fourth, fresh, patience = math.inf, math.inf, math.inf, False, PATIENT
-    moved, missed = 0.0, math.inf
+    moved, missed, largest = 0.0, math.inf, 0.0
     for trial in range(way.steps):
-        move_now = ends_move and (trial < FREELY or before <= FALLEN * moved)
+        move_now = ends_move and (trial < FREELY or before <= max(FALLEN * moved, SETTLED * largest))
         left, largest, farther = evaluate(face, contacts, carried, one, timing.step, move_now, runs)
         if move_now:
             moved, second, third, fourth = farther, math.inf, math.inf, math.inf
@@ -337,10 +337,11 @@ def find_forces(
             forget_ends(face)
             ends_move = False
             continue
-        ends_move = ends_move and moved > FOUND * largest and trial <= MOVING * way.steps
+        ends_move = ends_move and trial <= MOVING * way.steps
+        settled = not ends_move or (move_now and moved <= FOUND * largest)
         # Where many forces close the same gaps, rounding may leave more than is asked for.
         stalls = left <= timing.tolerance * largest and left > 0.1 * before
-        if (stalls or left <= FOUND * largest + rounding) and not ends_move:
+        if (stalls or left <= FOUND * largest + rounding) and settled:
             return trial, 0.0
         missed = left / largest if largest > 0.0 else math.inf
         if not left < math.inf:
