@@ -72,7 +72,7 @@ class ProfileMesh:
         other_r, other_z = np.roll(r, -1, axis=1), np.roll(z, -1, axis=1)
         return np.asarray(np.pi / 3.0 * ((r + other_r) * (r * other_z - other_r * z)).sum(axis=1))
 
-    @property
+    @cached_property
     def outline(self) -> Array:
         """Pairs of nodes of the sides that belong to one cell only, the profile to their left, shape (sides, 2)."""
         sides = _sides(self.cells).reshape(-1, 2)
