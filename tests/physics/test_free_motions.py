@@ -25,14 +25,14 @@ def turned_mesh():
     return st.SolidBody(mesh, STEEL, fixed=["inner"], cutoff=3e3, contact_faces=["top"], name="disc")
 
 
-def braked(held, track=None, start=(), rotation=(0.0, 0.0, 0.0), above=0.0):
+def braked(held, track=None, start=(), rotation=(0.0, 0.0, 0.0), above=0.0, points=("bottom",)):
     """Return a pad on a disc that turns, held by springs at the mean of its back, at several places of it, or not."""
     track = disc() if track is None else track
     mesh = (
         st.SolidMesh.block((0.03, 0.015, 0.02), (2, 1, 2)).moved((-0.015, 0.01 + above, -0.01)).moved((0.11, 0.0, 0.0))
     )
     pad = st.SolidBody(
-        mesh.moved(rotation=rotation), LINING, cutoff=2e4, damping=1e-3, contact_faces=["bottom"], name="pad"
+        mesh.moved(rotation=rotation), LINING, cutoff=2e4, damping=1e-3, contact_faces=points, name="pad"
     )
     words = {"turning": ((0.0, 1.0, 0.0), (0.0, 0.0, 0.0), 30.0), "track_face": "top"} if track.kind == "solid" else {}
     face = st.SurfaceContact(pad, "bottom", track, friction=st.Coulomb(0.3), stiffness=5e11, name="lining", **words)
@@ -61,11 +61,22 @@ def test_a_pad_that_nothing_holds_is_named():
     with pytest.raises(ValueError, match=words):
         st.sliding_stability(braked("no"))
     assert free_words(braked("no")) == "pad: translation along x and z and rotation about y"
+    few = braked("no", points={"bottom": 4})
     with pytest.raises(
         st.Diverged, match="; nothing but friction holds pad: translation along x and z and rotation"
     ) as run:
-        st.simulate(braked("no"), 5e-3)
+        st.simulate(few, 5e-3, contact_solve=st.GaussSeidel(sweeps=1))
     assert run.value.record.attrs["ended"] == "contact unsolved"
+
+
+def test_a_pad_that_nothing_holds_is_carried_along():
+    """Friction accelerates it to the velocity of the disc, where it sticks."""
+    run = st.simulate(braked("no"), 5e-3)
+    assert run.unsolved_steps[-1] == 0
+    velocity, late = 30.0 * 0.11, run.isel(time=slice(-40, None))
+    way = np.abs(late.contact_position.isel(tangent=0).squeeze())
+    np.testing.assert_allclose(np.gradient(way, run.time[-40:]), velocity, rtol=0.02)
+    assert run.surface_sticking_area[-1].sum() > 0.5 * run.surface_closed_area[-1].sum()
 
 
 def test_a_pad_held_at_several_places_slides():

@@ -16,6 +16,7 @@ from ..records import Probe
 from ..records.state import State
 from ..records.variables import ALONG_TANGENTS
 from ..system import System
+from .marches import Factors
 from .run import ALONG_BOTH, CONTACT_COLUMN, ENERGY_COLUMN
 from .stops import ENDED
 from .under_way import Marched, UnderWay, begun, changed
@@ -70,10 +71,13 @@ class Moment:
         The march.
     state : State
         State of its system.
+    factors : Factors
+        Factors that its march keeps.
     """
 
     under_way: UnderWay
     state: State
+    factors: Factors
 
 
 class LiveMarch:
@@ -156,18 +160,20 @@ class LiveMarch:
     @property
     def moment(self) -> Moment:
         """The present moment."""
-        return Moment(self.now.apart(), self.now.state)
+        return Moment(self.now.apart(), self.now.state, self.now.march.factors)
 
     def return_to(self, moment: Moment) -> None:
         """Return to an earlier moment; the march continues from it to the last bit as it did then."""
         self.now = moment.under_way.apart()
         self.now.march.put([moment.state])
+        self.now.march.keep(moment.factors)
 
     def at(self, moment: Moment) -> LiveMarch:
         """Return a march of its own that continues from an earlier moment, while this one stays where it is."""
         other = copy(self)
         other.now = replace(moment.under_way.apart(), march=moment.under_way.march.copy())
         other.now.march.put([moment.state])
+        other.now.march.keep(moment.factors)
         return other
 
     def restart(self) -> None:
@@ -192,8 +198,6 @@ class LiveMarch:
         """
         now, ratio = self.now, self.ratio
         imposed = now.impositions.on(now.sample * ratio, samples * ratio)
-        # A return to this moment finds the same.
-        now.march.forget()
         (chunk,) = now.march.advance([imposed], samples)
         done, ended = now.belief.of(chunk)
         time = (now.sample + np.arange(1, done + 1)) * self.interval

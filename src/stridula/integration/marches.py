@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numba
 import numpy as np
@@ -126,6 +126,21 @@ class Chunk:
     raw: Array
     completed: int
     ended: int
+
+
+class Factors(NamedTuple):
+    """Factors of the equations of many contacts; none where none are kept.
+
+    Attributes
+    ----------
+    rows : ndarray, shape (runs, rows, numbers), optional
+        Numbers of the contacts when they were factorised.
+    matrix : ndarray, shape (runs, unknowns, unknowns), optional
+        The factors.
+    """
+
+    rows: Array | None
+    matrix: Array | None
 
 
 class March:
@@ -268,7 +283,7 @@ class March:
         return found
 
     def put(self, states: Sequence[State]) -> None:
-        """Continue from given states of the systems."""
+        """Continue from given states of the systems, without the factors of earlier equations."""
         where = self.layout
         states = [*states, *[states[-1]] * (self.runs - self.given)]
         for run, (state, scale) in enumerate(zip(states, self.scales, strict=True)):
@@ -277,12 +292,22 @@ class March:
         energies = np.stack([state.energies for state in states], axis=1)
         for own, given in zip(self.carried, (carried, carried, energies), strict=True):
             own.reshape(given.shape)[:] = given
-        self.forget()
-
-    def forget(self) -> None:
-        """Let the next step depend on the state alone, to the last bit: factors of earlier equations are not used."""
         if self.contacts.dense.size:
             self.contacts.dense[:, self.layout.sizes.rows + FACTORS] = 0.0
+
+    @property
+    def factors(self) -> Factors:
+        """Factors of the equations of many contacts that are kept from step to step."""
+        dense, rows = self.contacts.dense, self.layout.sizes.rows
+        most = int(dense[:, rows + FACTORS, 0].max()) if dense.size else 0
+        return Factors(dense[:, rows:].copy(), dense[:, :most, :most].copy()) if most else Factors(None, None)
+
+    def keep(self, factors: Factors) -> None:
+        """Continue with given factors: then the next step is that of the march which had them, to the last bit."""
+        if factors.rows is not None and factors.matrix is not None:
+            most = factors.matrix.shape[1]
+            self.contacts.dense[:, self.layout.sizes.rows :] = factors.rows
+            self.contacts.dense[:, :most, :most] = factors.matrix
 
     def copy(self) -> March:
         """Return a copy in the same state."""
