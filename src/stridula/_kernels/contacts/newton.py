@@ -48,6 +48,7 @@ OPEN, HELD, SLIDING, TURNING = range(4)
 # Largest friction, in units of the force that undoes the slip, of which the direction is that of the slip, not an
 # unknown: in first steps, which find the states of contacts, and in later ones.
 SWIFT, SWIFTER = 0.25, 1e-4
+
 # A normal force and tangential ones, or changes of them; the last is zero in the plane.
 Vector = tuple[float, float, float]
 

@@ -344,7 +344,7 @@ def find_forces(
         if (stalls or left <= FOUND * largest + rounding) and settled:
             return trial, 0.0
         missed = left / largest if largest > 0.0 else math.inf
-        if not left < math.inf:
+        if not left < math.inf or trial + 1 == way.steps:
             break
         # A step along which the residual nowhere falls is taken short.
         if way.searches and halvings < HALVINGS and not left <= max(before, second, third, fourth):
@@ -452,7 +452,7 @@ def solve_together(
             soft = rows_of_run(contacts.faces, COMPLIANCE, one, runs)
             face = Face(soft, dense[:numbers], dense[numbers:], contacts.rows)
             for attempt in range(attempts[0], attempts[1]):
-                most = CLOSE if attempt == AT_ONCE - 1 else 0.0
+                most = CLOSE if attempt - attempts[0] == AT_ONCE - 1 else 0.0
                 steps, missed = seek(face, WAYS[attempt % len(WAYS)], contacts, carried, most, one, timing, runs)
                 if steps >= 0:
                     found, made = with_lane(found, one, 1.0), with_lane(made, one, float(steps))
