@@ -71,13 +71,13 @@ class Moment:
         The march.
     state : State
         State of its system.
-    factors : Factors
+    factors : Factors, optional
         Factors that its march keeps.
     """
 
     under_way: UnderWay
     state: State
-    factors: Factors
+    factors: Factors | None
 
 
 class LiveMarch:
@@ -165,15 +165,13 @@ class LiveMarch:
     def return_to(self, moment: Moment) -> None:
         """Return to an earlier moment; the march continues from it to the last bit as it did then."""
         self.now = moment.under_way.apart()
-        self.now.march.put([moment.state])
-        self.now.march.keep(moment.factors)
+        self.now.march.put([moment.state], moment.factors)
 
     def at(self, moment: Moment) -> LiveMarch:
         """Return a march of its own that continues from an earlier moment, while this one stays where it is."""
         other = copy(self)
         other.now = replace(moment.under_way.apart(), march=moment.under_way.march.copy())
-        other.now.march.put([moment.state])
-        other.now.march.keep(moment.factors)
+        other.now.march.put([moment.state], moment.factors)
         return other
 
     def restart(self) -> None:

@@ -129,18 +129,18 @@ class Chunk:
 
 
 class Factors(NamedTuple):
-    """Factors of the equations of many contacts; none where none are kept.
+    """Factors of the equations of many contacts that are kept from step to step.
 
     Attributes
     ----------
-    rows : ndarray, shape (runs, rows, numbers), optional
+    rows : ndarray, shape (runs, rows, numbers)
         Numbers of the contacts when they were factorised.
-    matrix : ndarray, shape (runs, unknowns, unknowns), optional
+    matrix : ndarray, shape (runs, unknowns, unknowns)
         The factors.
     """
 
-    rows: Array | None
-    matrix: Array | None
+    rows: Array
+    matrix: Array
 
 
 class March:
@@ -282,8 +282,8 @@ class March:
             found.append(State(modal, rows - modal / scale, carried, energies[:, run].copy()))
         return found
 
-    def put(self, states: Sequence[State]) -> None:
-        """Continue from given states of the systems, without the factors of earlier equations."""
+    def put(self, states: Sequence[State], factors: Factors | None = None) -> None:
+        """Continue from given states of the systems; with the factors kept then, as then to the last bit."""
         where = self.layout
         states = [*states, *[states[-1]] * (self.runs - self.given)]
         for run, (state, scale) in enumerate(zip(states, self.scales, strict=True)):
@@ -292,22 +292,19 @@ class March:
         energies = np.stack([state.energies for state in states], axis=1)
         for own, given in zip(self.carried, (carried, carried, energies), strict=True):
             own.reshape(given.shape)[:] = given
-        if self.contacts.dense.size:
-            self.contacts.dense[:, self.layout.sizes.rows + FACTORS] = 0.0
+        dense, rows = self.contacts.dense, self.layout.sizes.rows
+        if factors is not None:
+            most = factors.matrix.shape[1]
+            dense[:, rows:], dense[:, :most, :most] = factors
+        elif dense.size:
+            dense[:, rows + FACTORS] = 0.0
 
     @property
-    def factors(self) -> Factors:
-        """Factors of the equations of many contacts that are kept from step to step."""
+    def factors(self) -> Factors | None:
+        """The factors kept for the next step, None without any."""
         dense, rows = self.contacts.dense, self.layout.sizes.rows
         most = int(dense[:, rows + FACTORS, 0].max()) if dense.size else 0
-        return Factors(dense[:, rows:].copy(), dense[:, :most, :most].copy()) if most else Factors(None, None)
-
-    def keep(self, factors: Factors) -> None:
-        """Continue with given factors: then the next step is that of the march which had them, to the last bit."""
-        if factors.rows is not None and factors.matrix is not None:
-            most = factors.matrix.shape[1]
-            self.contacts.dense[:, self.layout.sizes.rows :] = factors.rows
-            self.contacts.dense[:, :most, :most] = factors.matrix
+        return Factors(dense[:, rows:].copy(), dense[:, :most, :most].copy()) if most else None
 
     def copy(self) -> March:
         """Return a copy in the same state."""
