@@ -12,15 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stridula._kernels.contacts.sweeps import solve_closed
-from stridula._kernels.lanes.operations import Runs
-from stridula._kernels.lanes.vectors import LANES
 from stridula._kernels.layout import columns as at
 from stridula._kernels.layout.laws import LAW_COLUMNS, STATIC
-from stridula._kernels.layout.parts import Contacts, Sizes, Timing
 from stridula.integration.contact_solve import GaussSeidel
-from stridula.integration.forces import FORCES, FREE_SLIPS
-from stridula.lowering.packing import PLAIN, aligned, columns, compliance_in_blocks, room_to_solve, side_by_side
+from stridula.integration.forces import solved
 
 OPEN, STICKING, SLIDING = range(3)
 KINDS = tuple(
@@ -125,31 +120,15 @@ class Found(NamedTuple):
 def solve(problem: Problem) -> Found:
     """Return the forces that the kernel finds."""
     count, own = problem.free.shape
-    per_block, rows = 1 if PLAIN else LANES, own * count
-    sizes = Sizes(0, 0, per_block, count, -(-rows // per_block), rows, 0, False, False, own > 2)
-    now, constants = np.zeros((count, at.IN_STEP)), np.zeros((count, at.CONTACT_CONSTANTS))
-    now[:, at.FREE_GAP], now[:, FREE_SLIPS[: own - 1]] = problem.free[:, 0], problem.free[:, 1:]
-    constants[:, at.AT_REST], constants[:, at.YIELD_STIFFNESS] = problem.friction, problem.stiffness
-    constants[:, at.YIELD_EXPONENT], constants[:, at.YIELD_REACH] = 1.0, problem.reach
-    laws = np.zeros((count, LAW_COLUMNS))
-    laws[:, STATIC] = problem.friction
-    contacts = Contacts(
-        np.full(count, at.COULOMB),
-        laws,
-        own * np.arange(count + 1),
-        columns(side_by_side([constants.ravel()])),
-        columns(aligned(3, 1)),
-        compliance_in_blocks([problem.compliance], sizes, per_block),
-        *room_to_solve(sizes, per_block),
-        columns(side_by_side([now.ravel()])),
-        columns(aligned(count * at.SUMS, 1)),
-    )
-    carried = columns(side_by_side([problem.carried().ravel()]))
-    timing = Timing(1, STEP, SOLVE.tolerance, SOLVE.sweeps)
-    made, error = solve_closed(own > 2 or None, contacts, carried, 1.0, sizes, timing, Runs(0, 1, 0.0))
-    after = contacts.now.reshape(count, at.IN_STEP)
-    forces = after[:, FORCES[:own]] * np.array([1.0, *[-1.0] * (own - 1)])
-    return Found(forces, after[:, at.STATUS_NOW], int(made), float(error))
+    laws, constants = np.zeros((count, LAW_COLUMNS)), np.zeros((count, at.CONTACT_CONSTANTS))
+    laws[:, STATIC] = constants[:, at.AT_REST] = problem.friction
+    constants[:, at.YIELD_STIFFNESS], constants[:, at.YIELD_EXPONENT] = problem.stiffness, 1.0
+    constants[:, at.YIELD_REACH] = problem.reach
+    given = (np.full(count, at.COULOMB), laws), problem.carried(), STEP, SOLVE
+    free = problem.free
+    found = solved(free[:, 0], free[:, 1:], problem.compliance, *given, constants=constants)
+    forces = found.forces(own - 1) * np.array([1.0, *[-1.0] * (own - 1)])
+    return Found(forces, found.now[:, at.STATUS_NOW], found.sweeps, found.error)
 
 
 def shapes_of(random: np.random.Generator, rows: int) -> np.ndarray:

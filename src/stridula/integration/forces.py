@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from .._kernels.contact.slipping import STICKING
@@ -19,6 +21,28 @@ from .contact_solve import GaussSeidel
 
 FREE_SLIPS = [at.FREE_SLIP, at.FREE_SLIP_B]
 FORCES = [at.NORMAL_NOW, at.TANGENTIAL_NOW, at.TANGENTIAL_NOW_B]
+
+
+class Solved(NamedTuple):
+    """Contacts solved in one step.
+
+    Attributes
+    ----------
+    now : ndarray, shape (contacts, numbers)
+        State of each in the step.
+    sweeps : int
+        Number of sweeps, or of steps of Newton's method.
+    error : float
+        Error of the forces, relative to the largest.
+    """
+
+    now: Array
+    sweeps: int
+    error: float
+
+    def forces(self, tangents: int) -> Array:
+        """Return the normal and the tangential forces of each [N], shape (contacts, 1 + tangents)."""
+        return np.asarray(self.now[:, FORCES[: 1 + tangents]])
 
 
 def forces_of(
@@ -52,19 +76,37 @@ def forces_of(
     first_rows : ndarray of int, shape (contacts + 1,), optional
         First row of each contact, and the end of the last; by default all have the same tangents.
     """
+    tangents = slips.shape[1]
+    if len(compliance) == 2:
+        alone = _force_of_one(float(gaps[0]), float(slips[0, 0]), compliance, laws, carried[0], step)
+        return np.pad(alone, ((0, 0), (0, tangents - 1)))
+    return solved(gaps, slips, compliance, laws, carried, step, solve, first_rows).forces(tangents)
+
+
+def solved(
+    gaps: Array,
+    slips: Array,
+    compliance: Array,
+    laws: tuple[Array, Array],
+    carried: Array,
+    step: float,
+    solve: GaussSeidel,
+    first_rows: Array | None = None,
+    *,
+    constants: Array | None = None,
+) -> Solved:
+    """Return contacts solved as in the march, rigid ones if no `constants` of theirs are given; see `forces_of`."""
     count, tangents = slips.shape
     if first_rows is None:
         first_rows = (1 + tangents) * np.arange(count + 1)
+    if constants is None:
+        constants = np.zeros((count, at.CONTACT_CONSTANTS))
+        constants[:, at.AT_REST] = laws[1][:, STATIC]
     space, rows = bool((np.diff(first_rows) > 2).any()), int(first_rows[-1])
-    if count == 1 and not space:
-        alone = _force_of_one(float(gaps[0]), float(slips[0, 0]), compliance, laws, carried[0], step)
-        return np.pad(alone, ((0, 0), (0, tangents - 1)))
     per_block = 1 if PLAIN else LANES
     sizes = Sizes(0, 0, per_block, count, -(-rows // per_block), rows, 0, False, False, space)
     now = np.zeros((count, at.IN_STEP))
     now[:, at.FREE_GAP], now[:, FREE_SLIPS[:tangents]] = gaps, slips
-    constants = np.zeros((count, at.CONTACT_CONSTANTS))
-    constants[:, at.AT_REST] = laws[1][:, STATIC]
     contacts = Contacts(
         *laws,
         first_rows,
@@ -77,9 +119,8 @@ def forces_of(
     )
     timing, touching = Timing(1, step, solve.tolerance, solve.sweeps), 1.0
     carried = columns(side_by_side([carried.ravel()]))
-    solve_closed(space or None, contacts, carried, touching, sizes, timing, Runs(0, 1, 0.0))
-    now = contacts.now.reshape(count, at.IN_STEP)
-    return np.asarray(now[:, FORCES[: 1 + tangents]])
+    made, error = solve_closed(space or None, contacts, carried, touching, sizes, timing, Runs(0, 1, 0.0))
+    return Solved(contacts.now.reshape(count, at.IN_STEP), int(made), float(error))
 
 
 def _force_of_one(
