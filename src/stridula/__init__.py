@@ -94,6 +94,7 @@ _HOME = {
     "analysis": ("regime",),
     "analysis.record_card": ("RecordCard", "card"),
     "bars": ("show_progress",),
+    "cycles": ("NoCycle", "limit_cycle"),
     "acoustics": ("Air", "Bridge", "radiate", "radiation_damping", "radiation_efficiency"),
     "studies": (
         "CalibrationProgress",
@@ -108,6 +109,7 @@ _HOME = {
         "check_step",
         "critical_value",
         "ensemble",
+        "follow_cycle",
         "root_loci",
         "sensitivity",
         "squeal_survey",
@@ -122,6 +124,7 @@ _PUBLIC = (
     "bodies",
     "connections",
     "contact",
+    "cycles",
     "drives",
     "histories",
     "integration",

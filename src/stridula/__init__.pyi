@@ -5,6 +5,7 @@ from . import analysis as analysis
 from . import bodies as bodies
 from . import connections as connections
 from . import contact as contact
+from . import cycles as cycles
 from . import drives as drives
 from . import histories as histories
 from . import integration as integration
@@ -81,6 +82,8 @@ from .contact import RigidTrack as RigidTrack
 from .contact import StaticKinetic as StaticKinetic
 from .contact import Stribeck as Stribeck
 from .contact import SurfaceContact as SurfaceContact
+from .cycles import NoCycle as NoCycle
+from .cycles import limit_cycle as limit_cycle
 from .doubtful import DoubtfulValue as DoubtfulValue
 from .drives import Force as Force
 from .drives import Gravity as Gravity
@@ -131,6 +134,7 @@ from .studies import calibrate as calibrate
 from .studies import check_step as check_step
 from .studies import critical_value as critical_value
 from .studies import ensemble as ensemble
+from .studies import follow_cycle as follow_cycle
 from .studies import root_loci as root_loci
 from .studies import sensitivity as sensitivity
 from .studies import squeal_survey as squeal_survey

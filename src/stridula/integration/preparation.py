@@ -15,7 +15,7 @@ from ..records.by_surface import groups
 from ..records.probes import usual_probes
 from ..system import System
 from .point_records import PointRecord, bytes_of
-from .run import Run
+from .run import Midway, Run
 from .settings import Settings
 from .surface_records import SurfaceRecord
 from .timing import Timing, choose_timing, sampled
@@ -77,7 +77,7 @@ class Preparation:
             probes += tuple(ModalMotion(body) for body in system.bodies)
         return Arrays(system, probes, assemble(system, probes))
 
-    def timing(self, arrays: Arrays, start: xr.Dataset | None = None) -> Timing:
+    def timing(self, arrays: Arrays, start: xr.Dataset | Midway | None = None) -> Timing:
         """Return the step and the sampling of a system, with the step of a record to continue if none is given."""
         step, rate = self.settings.step, self.settings.sample_rate
         if step is None and isinstance(start, xr.Dataset) and "step" in start.attrs:
@@ -96,7 +96,7 @@ class Preparation:
         return replace(timing, motion_every=every, samples=every * max(1, round(timing.samples / every)))
 
     @of_ordinary_size("system")
-    def run(self, arrays: Arrays, start: xr.Dataset | None = None, title: str = "") -> Run:
+    def run(self, arrays: Arrays, start: xr.Dataset | Midway | None = None, title: str = "") -> Run:
         """Return the run of a system, ready to march."""
         timing = self.timing(arrays, start)
         every = self._every(arrays.system, timing)
@@ -143,7 +143,7 @@ class Preparation:
         if isinstance(asked, str) or (asked is None and not system.faces):
             return 0
         if asked is None:
-            return max(1, round(1.0 / (timing.interval * MAP_RATE)))
+            return min(max(1, round(1.0 / (timing.interval * MAP_RATE))), timing.samples)
         if not (system.surface_names and system.has_two_tangents):
             raise ArgumentError("surface_rate", "be left out without surfaces in contact", asked)
         return _intervals("surface_rate", asked, timing)

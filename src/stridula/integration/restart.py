@@ -42,6 +42,33 @@ def state_of(
         If the record does not end in a state that can be continued, or if the system differs in more than drives,
         friction and duration.
     """
+    state, attributes = state_at_end(start, arrays), start.attrs
+    for name, value in (("scheme", scheme.name), ("step", timing.step), ("steps_per_sample", timing.ratio)):
+        if attributes[name] != value:
+            raise ArgumentError("start", f"have the same {name} as this run, {value!r}", attributes[name])
+    columns = start["state_raw"].shape[-1:]
+    if columns != (len(arrays.probes),):
+        raise ArgumentError(
+            "start", f"have the same number of probes, {len(arrays.probes)}", start, got=_count(columns)
+        )
+    instance("start.scenario", attributes["scenario"], str)
+    before, now = (tomllib.loads(text) for text in (attributes["scenario"], scenario_toml(system, probes, {})))
+    knows_motion = "state_motion" in start
+    _check_frozen(_frozen(before, knows_motion), _frozen(now, knows_motion))
+    # Without probes, or after an immediate interruption, the low-pass needs no values.
+    memory = memory_of(timing) if len(arrays.probes) and start.sizes["time"] else 0
+    _check_values(start, {"raw": (memory, len(arrays.probes))})
+    return state
+
+
+def state_at_end(start: xr.Dataset, arrays: Assembly) -> State:
+    """Return the state at the end of a record, for a system with as many modes and contacts.
+
+    Raises
+    ------
+    ValueError
+        If the record does not end in a state that can be continued.
+    """
     instance("start", start, xr.Dataset)
     needed = ("time", *(f"state_{name}" for name in STATE), "state_raw")
     if any(name not in start.variables for name in needed):
@@ -61,24 +88,21 @@ def state_of(
         raise ArgumentError(
             "start", f"have the state_layout of this version, {LAYOUT}", got, got=f"{brief(got)}: {OTHER_VERSION}"
         )
-    for name, value in (("scheme", scheme.name), ("step", timing.step), ("steps_per_sample", timing.ratio)):
-        if attributes[name] != value:
-            raise ArgumentError("start", f"have the same {name} as this run, {value!r}", attributes[name])
-    modes, columns = (start[name].shape[-1:] for name in ("state_modal", "state_raw"))
+    modes = start["state_modal"].shape[-1:]
     if modes != (arrays.mode_count,):
         raise ArgumentError(
             "start", f"have the same number of modes as this system, {arrays.mode_count}", start, got=_count(modes)
         )
-    if columns != (len(arrays.probes),):
-        raise ArgumentError(
-            "start", f"have the same number of probes, {len(arrays.probes)}", start, got=_count(columns)
-        )
-    instance("start.scenario", attributes["scenario"], str)
-    before, now = (tomllib.loads(text) for text in (attributes["scenario"], scenario_toml(system, probes, {})))
-    knows_motion = "state_motion" in start
-    _check_frozen(_frozen(before, knows_motion), _frozen(now, knows_motion))
     _check_whole(start)
-    _check_state(start, arrays, timing, len(arrays.probes))
+    modal, contacts = (2, arrays.mode_count), len(arrays.contacts)
+    shapes = {
+        "modal": modal,
+        "remainder": modal,
+        "carried": (contacts, at.CARRIED),
+        "energies": (at.ENERGIES,),
+        "motion": (3, contacts, at.MOTIONS),
+    }
+    _check_values(start, shapes)
     return State(*(np.array(start[f"state_{name}"].values, dtype=float, order="C") for name in STATE))
 
 
@@ -100,19 +124,8 @@ def _check_whole(start: xr.Dataset) -> None:
         )
 
 
-def _check_state(start: xr.Dataset, arrays: Assembly, timing: Timing, probes: int) -> None:
-    """Raise a ValueError if a state does not have the layout of the march."""
-    modal, contacts = (2, arrays.mode_count), len(arrays.contacts)
-    # Without probes, or after an immediate interruption, the low-pass needs no values.
-    memory = memory_of(timing) if probes and start.sizes["time"] else 0
-    shapes = {
-        "modal": modal,
-        "remainder": modal,
-        "carried": (contacts, at.CARRIED),
-        "energies": (at.ENERGIES,),
-        "raw": (memory, probes),
-        "motion": (3, contacts, at.MOTIONS),
-    }
+def _check_values(start: xr.Dataset, shapes: dict[str, tuple[int, ...]]) -> None:
+    """Raise a ValueError if parts of a state do not have the layout of the march."""
     for name, shape in shapes.items():
         if f"state_{name}" not in start:
             continue

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from copy import deepcopy
 from dataclasses import asdict
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -30,7 +31,7 @@ from .marches import Chunk, Excitation, Impositions
 from .probe_records import ProbeRecords
 from .restart import imposed_at, motion_about, moved_on, state_of
 from .settings import Settings
-from .start import state_at_start
+from .start import state_at_start, stored_in_contacts
 from .stops import ENDED, contact_words, divergence_words, rank_words
 from .surface_records import ALL_POINTS, SurfaceRecord
 from .timing import Timing
@@ -67,6 +68,21 @@ ALONG_BOTH = {
 ALONG_B = {b for _, b in ALONG_BOTH.values()}
 
 
+class Midway(NamedTuple):
+    """A state within a motion, from which a run begins.
+
+    Attributes
+    ----------
+    state : State
+        The state, without energies.
+    first_step : int
+        Number of steps before it.
+    """
+
+    state: State
+    first_step: int
+
+
 class Run:
     """One run: the arrays of a system under a time scheme, its state and its record."""
 
@@ -78,7 +94,7 @@ class Run:
         settings: Settings,
         timing: Timing,
         *,
-        start: xr.Dataset | None,
+        start: xr.Dataset | Midway | None,
         title: str,
         surfaces: SurfaceRecord | None = None,
     ) -> None:
@@ -92,13 +108,18 @@ class Run:
             self.state = state_at_start(placed, scheme, timing.step, self.blocks, settings.solve)
             self.first_step, self.initial_energy = 0, float(self.state.energies[at.STORED])
             before = None
+        elif isinstance(start, Midway):
+            self.state, self.first_step, before = deepcopy(start.state), start.first_step, None
+            stored = self.blocks.modes.stored_energy(self.state.modal)
+            self.initial_energy = float(stored + stored_in_contacts(arrays, self.state.carried))
+            self.state.energies[at.STORED] = self.initial_energy
         else:
             self.state = state_of(start, system, arrays, scheme, timing, probes)
             self.arrays, self.offset = moved_on(start, system, arrays, self.blocks.modes, self.state, timing.step)
             self.first_step, self.initial_energy = int(start.attrs["last_step"]), float(start.attrs["initial_energy"])
             before = np.array(start["state_raw"].values, dtype=float)
         # Rounding errors of large energies remain when these are gone.
-        met = 0.0 if start is None else float(start.attrs.get("largest_energy", 0.0))
+        met = float(start.attrs.get("largest_energy", 0.0)) if isinstance(start, xr.Dataset) else 0.0
         self.belief = Belief(system, arrays, self.blocks, self.state.energies, self.initial_energy, met)
         self.impositions = Impositions(self.arrays, self.blocks, timing.step)
         self.energy_record = np.empty((at.ENERGIES, timing.samples))

@@ -86,6 +86,11 @@ class Settings:
         return GaussSeidel() if self.contact_solve is None else self.contact_solve
 
     @property
+    def of_run(self) -> dict[str, Any]:
+        """All settings by name, as arguments of `simulate`."""
+        return {name: getattr(self, name) for name in NAMES}
+
+    @property
     def others(self) -> dict[str, Any]:
         """Declared numbers other than those of the sampling, by name, where they are not the default ones."""
         return {

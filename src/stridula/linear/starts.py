@@ -43,12 +43,15 @@ class Start:
         Internal states of the friction laws along both tangents; only bristles in space have a second one.
     equilibria : str
         Number of equilibria in words, as in `Equilibrium.found`.
+    exponent : complex, optional
+        Exponent of the mode on top [1/s]; 0 without one.
     """
 
     position: Array
     velocity: Array
     friction_state: Array
     equilibria: str
+    exponent: complex = 0j
 
 
 def start_of(system: System, asked: InitialEquilibrium) -> Start:
@@ -71,7 +74,7 @@ def start_of(system: System, asked: InitialEquilibrium) -> Start:
         0.0 if contact.circle else rate for contact, rate in zip(system.contacts, structure.rates[0], strict=True)
     ]
     velocity = moves + travelling(structure, at, slides * (carried + along @ moves))
-    position, states = at.displacement, np.zeros((len(structure.lines), 2))
+    position, states, exponent = at.displacement, np.zeros((len(structure.lines), 2)), 0j
     if asked.mode is not None:
         shape, exponent, changes = _mode(structure, at, asked)
         position = position + shape.real
@@ -80,7 +83,7 @@ def start_of(system: System, asked: InitialEquilibrium) -> Start:
     laws = [contact.friction for contact in system.contacts]
     slips, ways = at.slip_velocity.tolist(), structure.ways.tolist()
     friction_state = [_states(*one) for one in zip(laws, slips, ways, states.tolist(), strict=True)]
-    return Start(_closed(whole, at.status, position), velocity, np.array(friction_state), at.found)
+    return Start(_closed(whole, at.status, position), velocity, np.array(friction_state), at.found, exponent)
 
 
 def at_rest(system: System, asked: InitialEquilibrium) -> tuple[Structure, Structure, Equilibrium]:

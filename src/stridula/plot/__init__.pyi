@@ -1,6 +1,8 @@
 """Types of the public names, which `__init__.py` imports on first use."""
 
 from .bands import third_octaves as third_octaves
+from .branches import bifurcation as bifurcation
+from .branches import multipliers as multipliers
 from .colours import LINE as LINE
 from .colours import LINES as LINES
 from .colours import STATUS_COLOURS as STATUS_COLOURS

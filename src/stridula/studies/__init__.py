@@ -19,6 +19,7 @@ _HOME = {
     "check_step": "step_checks",
     "critical_value": "loci",
     "ensemble": "ensembles",
+    "follow_cycle": "branches",
     "mean_and_interval": "ensembles",
     "root_loci": "loci",
     "sensitivity": "sobol",

@@ -1,5 +1,6 @@
 """Types of the public names, which `__init__.py` imports on first use."""
 
+from .branches import follow_cycle as follow_cycle
 from .calibration import CalibrationProgress as CalibrationProgress
 from .calibration import Target as Target
 from .calibration import calibrate as calibrate

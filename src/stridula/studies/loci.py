@@ -101,7 +101,7 @@ def root_loci(
             "equilibria": (key, [one.attrs["equilibria"] for one in found]),
         },
         {key: (key, grid, {"units": units}), "mode": np.arange(followed.shape[1])},
-        _origin(source, overrides),
+        origin_of(source, overrides),
     )
 
 
@@ -216,7 +216,7 @@ def parameter_of(loci: xr.Dataset) -> str:
     return str(loci["equilibrium"].dims[0])
 
 
-def _origin(source: Source, overrides: Mapping[str, Any] | None) -> dict[str, str]:
+def origin_of(source: Source, overrides: Mapping[str, Any] | None) -> dict[str, str]:
     """Return the attributes that record the origin of a result; nothing for a function."""
     if callable(source):
         return {}
@@ -225,10 +225,8 @@ def _origin(source: Source, overrides: Mapping[str, Any] | None) -> dict[str, st
     return words | {"stridula_version": __version__}
 
 
-def _modes_of(
-    source: Source, key: str, units: str, overrides: Mapping[str, Any] | None, options: Mapping[str, Any]
-) -> Callable[[float], xr.Dataset]:
-    """Return a function of a value that returns the modes."""
+def systems_over(source: Source, key: str, units: str, overrides: Mapping[str, Any] | None) -> SystemOf:
+    """Return a function of a value of a parameter that returns the system."""
     instance("key", key, str)
     instance("units", units, str)
     given = dict(by_key("overrides", overrides))
@@ -242,10 +240,15 @@ def _modes_of(
         number = int(value) if value.is_integer() else value
         return load_scenario(source, given | {key: f"{value!r} {units}" if units else number}).system
 
-    def modes_of(value: float) -> xr.Dataset:
-        return sliding_stability(system_of(value), **options)
+    return system_of
 
-    return modes_of
+
+def _modes_of(
+    source: Source, key: str, units: str, overrides: Mapping[str, Any] | None, options: Mapping[str, Any]
+) -> Callable[[float], xr.Dataset]:
+    """Return a function of a value that returns the modes."""
+    system_of = systems_over(source, key, units, overrides)
+    return lambda value: sliding_stability(system_of(value), **options)
 
 
 def _verdict(modes: xr.Dataset) -> str:

@@ -1,0 +1,126 @@
+"""Floquet multipliers of a periodic motion, and its stability in words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array
+from .returning import Return
+
+# Most products for the multipliers, and largest error of those that are returned.
+MOST_PRODUCTS, LARGEST_ERROR = 80, 1e-3
+# Norm of what a product adds, relative to the product, below which all multipliers have been found.
+COMPLETE = 1e-7
+# Imaginary part, relative to its size, below which a multiplier is real.
+REAL = 1e-5
+# Least distance from the unit circle that counts.
+MARGIN = 1e-6
+SEED = 0
+
+FOLD, DOUBLING, TORUS = "fold", "period doubling", "Neimark-Sacker"
+WORDS = {
+    FOLD: "neighbouring motions depart without turning back",
+    DOUBLING: "neighbouring motions depart with twice the period",
+}
+
+
+@dataclass(frozen=True)
+class Multipliers:
+    """Multipliers of the motions next to a periodic one over a period.
+
+    Attributes
+    ----------
+    values : ndarray of complex
+        Multipliers, the largest first.
+    trivial : int or None
+        Number of the one along the motion, which is 1; None if drives prescribe the phase.
+    period : float
+        Period [s].
+    """
+
+    values: Array
+    trivial: int | None
+    period: float
+
+    @property
+    def accuracy(self) -> float:
+        """Distance of the trivial multiplier from 1; NaN without one."""
+        return float("nan") if self.trivial is None else float(abs(self.values[self.trivial] - 1.0))
+
+    @property
+    def others(self) -> Array:
+        """All multipliers but the trivial one."""
+        return self.values if self.trivial is None else np.delete(self.values, self.trivial)
+
+    @property
+    def leading(self) -> complex:
+        """The largest of these, 0 without any."""
+        return complex(self.others[0]) if self.others.size else 0j
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether no neighbouring motion departs."""
+        return abs(self.leading) <= 1.0 + MARGIN
+
+    @property
+    def kind(self) -> str:
+        """The bifurcation at which the leading multiplier would cross the unit circle."""
+        if abs(self.leading.imag) > REAL * abs(self.leading):
+            return TORUS
+        return FOLD if self.leading.real >= 0.0 else DOUBLING
+
+    @property
+    def second_frequency(self) -> float:
+        """Frequency [Hz] by which the leading pair of multipliers turns; NaN if the leading one is real."""
+        if self.kind != TORUS:
+            return float("nan")
+        return float(abs(np.angle(self.leading)) / (2.0 * np.pi * self.period))
+
+    @property
+    def verdict(self) -> str:
+        """Stability in words."""
+        size = f"{abs(self.leading):.4g}"
+        if self.is_stable and abs(self.leading) >= 1.0 - MARGIN:
+            return "stable: neighbouring motions neither depart nor all return, as without damping"
+        if self.is_stable:
+            return f"stable: neighbouring motions return, by a factor of at most {size} in a period"
+        if self.kind == TORUS:
+            second, first = self.second_frequency, 1.0 / self.period
+            tones = f"{first - second:.4g} and {first + second:.4g} Hz"
+            return f"unstable: a pair of multipliers of size {size} adds tones at {tones}"
+        return f"unstable: {WORDS[self.kind]}, by a factor of {size} in a period"
+
+
+def multipliers_of(cycle: Return, is_driven: bool) -> Multipliers:
+    """Return the multipliers of a periodic motion by Arnoldi's method: all of them for few modes, else the largest."""
+    counted, norm = cycle.vectors.counted, cycle.vectors.norm
+    # The first product is a motion that the march has reached.
+    direction = cycle.product(cycle.vectors.random(SEED, cycle.orbit.vector))
+    size = norm(direction)
+    if not size > 0.0:
+        return Multipliers(np.zeros(1, dtype=complex), None, cycle.orbit.period)
+    basis = [direction / size]
+    projected = np.zeros((MOST_PRODUCTS + 1, MOST_PRODUCTS))
+    used, left = 0, np.inf
+    for k in range(MOST_PRODUCTS):
+        direction = cycle.product(basis[k])
+        whole = norm(direction)
+        for _ in range(2):
+            for i, one in enumerate(basis):
+                part = counted(one) @ counted(direction)
+                projected[i, k] += part
+                direction = direction - part * one
+        left, used = norm(direction), k + 1
+        projected[k + 1, k] = left
+        if left <= COMPLETE * max(whole, 1.0):
+            break
+        basis.append(direction / left)
+    values, vectors = np.linalg.eig(projected[:used, :used])
+    errors = left * np.abs(vectors[-1])
+    kept = errors <= np.maximum(LARGEST_ERROR, COMPLETE)
+    values = values[kept]
+    values = values[np.argsort(-np.abs(values), kind="stable")]
+    trivial = None if is_driven or not values.size else int(np.argmin(np.abs(values - 1.0)))
+    return Multipliers(values, trivial, cycle.orbit.period)
