@@ -84,6 +84,7 @@ from .contact import Stribeck as Stribeck
 from .contact import SurfaceContact as SurfaceContact
 from .cycles import NoCycle as NoCycle
 from .cycles import limit_cycle as limit_cycle
+from .cycles import lyapunov_exponent as lyapunov_exponent
 from .doubtful import DoubtfulValue as DoubtfulValue
 from .drives import Force as Force
 from .drives import Gravity as Gravity
@@ -130,11 +131,13 @@ from .studies import StepCheck as StepCheck
 from .studies import SweepProgress as SweepProgress
 from .studies import Target as Target
 from .studies import agreement as agreement
+from .studies import basin as basin
 from .studies import calibrate as calibrate
 from .studies import check_step as check_step
 from .studies import critical_value as critical_value
 from .studies import ensemble as ensemble
 from .studies import follow_cycle as follow_cycle
+from .studies import orbit_diagram as orbit_diagram
 from .studies import root_loci as root_loci
 from .studies import sensitivity as sensitivity
 from .studies import squeal_survey as squeal_survey

@@ -3,6 +3,7 @@
 from .bowed import MOTIONS, bowed_motion
 from .levels import largest_jump, peak_level, swing
 from .phases import advance, bursts, complete, longest_unchanged, phases, settling_time, status_share, stops
+from .poincare import poincare_section
 from .regime_measures import Thresholds
 from .regimes import REGIMES, regime, regime_of
 from .spectra import (
@@ -31,6 +32,7 @@ __all__ = [
     "longest_unchanged",
     "peak_level",
     "phases",
+    "poincare_section",
     "regime",
     "regime_of",
     "settling_time",

@@ -14,7 +14,8 @@ from ..integration.period_map import MarchEnded, PeriodMap
 from ..integration.state_vectors import StateVectors
 from ..lowering import Assembly
 from .drive_periods import drive_period
-from .newton import Condition, closed_orbit, newton_step
+from .linearised import Condition, Linearised
+from .newton import closed_orbit
 from .returning import Orbit, Return
 
 # Change of the parameter, relative to its range, for the derivative.
@@ -196,12 +197,12 @@ class Branch:
                 if not self.is_driven:
                     others = [now.by_period(), by_value]
                     conditions = [Condition(now.flow, [0.0, 0.0]), Condition(along.state, [0.0, *along.factors])]
-                step = newton_step(now, others, conditions, [by_value])
+                step = Linearised.of(now, others, conditions, [by_value]).step()
                 value += step.amounts[-1]
                 period += 0.0 if self.is_driven else step.amounts[0]
                 if not 0.2 * near.orbit.period < period < 5.0 * near.orbit.period:
                     raise NotFound("the period does not stay near")
-                now = self._moved(near.of_period, value, step.vector(1.0), period, now)
+                now = self._moved(near.of_period, value, step.vector, period, now)
                 if not now.residual < np.inf:
                     break
         except MarchEnded as error:

@@ -10,13 +10,17 @@ from ..arrays import Array
 from .returning import Return
 
 # Most products for the multipliers, and largest error of those that are returned.
-MOST_PRODUCTS, LARGEST_ERROR = 80, 1e-3
+MOST_PRODUCTS, LARGEST_ERROR = 200, 1e-3
+# Distance of the multiplier along the cycle from 1 above which it has not been found.
+FOUND = 0.2
 # Norm of what a product adds, relative to the product, below which all multipliers have been found.
 COMPLETE = 1e-7
 # Imaginary part, relative to its size, below which a multiplier is real.
 REAL = 1e-5
 # Least distance from the unit circle that counts.
 MARGIN = 1e-6
+# Size of perturbations relative to the residual of a motion whose contacts jump at a step.
+OF_RESIDUAL = 30.0
 SEED = 0
 
 FOLD, DOUBLING, TORUS = "fold", "period doubling", "Neimark-Sacker"
@@ -61,8 +65,8 @@ class Multipliers:
 
     @property
     def is_stable(self) -> bool:
-        """Whether no neighbouring motion departs."""
-        return abs(self.leading) <= 1.0 + MARGIN
+        """Whether no neighbouring motion departs, as far as the multipliers are known."""
+        return self.are_known and abs(self.leading) <= 1.0 + MARGIN
 
     @property
     def kind(self) -> str:
@@ -79,8 +83,15 @@ class Multipliers:
         return float(abs(np.angle(self.leading)) / (2.0 * np.pi * self.period))
 
     @property
+    def are_known(self) -> bool:
+        """Whether they were found: the trivial one is among them, or any if there is none."""
+        return self.values.size > 0 and not self.accuracy > FOUND
+
+    @property
     def verdict(self) -> str:
         """Stability in words."""
+        if not self.are_known:
+            return "unknown: the multipliers were not found"
         size = f"{abs(self.leading):.4g}"
         if self.is_stable and abs(self.leading) >= 1.0 - MARGIN:
             return "stable: neighbouring motions neither depart nor all return, as without damping"
@@ -97,7 +108,7 @@ def multipliers_of(cycle: Return, is_driven: bool) -> Multipliers:
     """Return the multipliers of a periodic motion by Arnoldi's method: all of them for few modes, else the largest."""
     counted, norm = cycle.vectors.counted, cycle.vectors.norm
     # The first product is a motion that the march has reached.
-    direction = cycle.product(cycle.vectors.random(SEED, cycle.orbit.vector))
+    direction = cycle.product(cycle.vectors.random(SEED, cycle.orbit.vector), OF_RESIDUAL)
     size = norm(direction)
     if not size > 0.0:
         return Multipliers(np.zeros(1, dtype=complex), None, cycle.orbit.period)
@@ -105,7 +116,7 @@ def multipliers_of(cycle: Return, is_driven: bool) -> Multipliers:
     projected = np.zeros((MOST_PRODUCTS + 1, MOST_PRODUCTS))
     used, left = 0, np.inf
     for k in range(MOST_PRODUCTS):
-        direction = cycle.product(basis[k])
+        direction = cycle.product(basis[k], OF_RESIDUAL)
         whole = norm(direction)
         for _ in range(2):
             for i, one in enumerate(basis):

@@ -2,27 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import Array
 from ..integration.period_map import MarchEnded, PeriodMap
 from ..integration.state_vectors import StateVectors
+from .linearised import Condition, Linearised
 from .returning import Orbit, Return
 
-# Share of the residual that the linear equations may leave, and most products for them.
-LINEAR, MOST_PRODUCTS = 1e-3, 80
-# Most steps of the method, most halvings of a step, and steps in a row that may fail to halve the residual.
-MOST_STEPS, HALVINGS, VAIN = 40, 5, 8
-# Size of a motion, relative to that at the start, below which it has died away.
-FAINT = 1e-6
-# Shortest period that a step may lead to, relative to the last one.
-SHORTEST = 0.2
-# Norm of a direction, relative to the last one, below which it is due to rounding.
-ROUND_OFF = 1e-10
+# Most steps of the method, and steps in a row that may fail to reduce the residual to this share.
+MOST_STEPS, VAIN, ENOUGH = 60, 6, 0.7
+# Longest first step, relative to the size of the motion; factors of the longest step after one whose residual falls
+# nearly as that of the linearised motion, and after one whose residual does not; shares of its fall between these.
+LONGEST, LONGER, SHORTER = 0.2, 2.5, 0.4
+WELL, BADLY, VAINLY = 0.6, 0.25, 0.05
+# Most steps that are tried from an orbit.
+MOST_TRIED = 8
+# Size of a motion, relative to that at the start and to its state, below which it has died away.
+FAINT, ROUND_OFF = 1e-6, 1e-11
+# Change of the period in a step, as a factor.
+CHANGE = 2.0
+# Residual, relative to the part of a period that a step is, that a jump within a step may leave.
+OF_A_STEP = 0.1
 
 # Called with the number of each step of the method, its residual, and the periods marched so far.
 Tell = Callable[[int, float, float], None]
@@ -87,22 +90,23 @@ def closed_orbit(
     """
     now = Return.of(of_period, vectors, orbit)
     _weigh(now)
-    found, first, vain = Found(now, [now.residual]), now, 0
+    found, first = Found(now, [now.residual]), now
+    longest, vain = LONGEST * now.size, 0
     for number in range(steps):
         tell(number, now.residual, of_period.counter.marched)
         if now.residual < tolerance:
             return found
-        if not now.size > FAINT * first.size or not np.isfinite(now.residual):
+        if not now.size > max(FAINT * first.size, ROUND_OFF * vectors.norm(now.orbit.vector)):
             found.reason = "the motion dies away to rest or to steady sliding"
             return found
-        now = _improved(now, is_driven)
-        vain = 0 if now.residual < 0.5 * found.best.residual else vain + 1
+        now, longest = _improved(now, is_driven, longest)
+        vain = 0 if now.residual < ENOUGH * found.best.residual else vain + 1
         found.residuals.append(now.residual)
         if now.residual < found.best.residual:
             found.best = now
-        if vain == VAIN:
+        if vain == VAIN or (vain > 1 and _is_within_a_step(found.best)):
             break
-    if found.best.residual >= tolerance:
+    if found.best.residual >= tolerance and not _is_within_a_step(found.best):
         found.reason = "the search does not come nearer"
     return found
 
@@ -113,125 +117,43 @@ def _weigh(now: Return) -> None:
         now.vectors.weigh_states(now.passed.friction_states, now.size**2)
 
 
-def _improved(now: Return, is_driven: bool) -> Return:
-    """Return the orbit after a step of Newton's method, shortened while the residual does not fall."""
-    step = newton_step(now, [] if is_driven else [now.by_period()], [] if is_driven else [Condition(now.flow, [0.0])])
-    share, best = 1.0, None
-    for _ in range(HALVINGS + 1):
-        period = now.orbit.period + (share * step.amounts[0] if step.amounts else 0.0)
-        if period > SHORTEST * now.orbit.period:
-            try:
-                tried = Return.of(now.of_period, now.vectors, Orbit(step.vector(share), period, now.status_after))
-            except MarchEnded:
-                tried = None
-            if tried is not None and (best is None or tried.residual < best.residual):
-                best = tried
-            if best is not None and best.residual < (1.0 - 0.25 * share) * now.residual:
-                break
-        share *= 0.5
+def _is_within_a_step(now: Return) -> bool:
+    """Return whether a motion is periodic as far as steps can tell: contacts jump at a step, not within it."""
+    return now.residual < OF_A_STEP * 2.0 * np.pi / now.of_period.steps
+
+
+def _improved(now: Return, is_driven: bool, longest: float) -> tuple[Return, float]:
+    """Return the orbit after a step of Newton's method, and the longest next one.
+
+    The longest step follows the accuracy of the linearised motion (a trust region).
+    """
+    others, conditions = ([], []) if is_driven else ([now.by_period()], [Condition(now.flow, [0.0])])
+    linearised = Linearised.of(now, others, conditions)
+    best: Return | None = None
+    for _ in range(MOST_TRIED):
+        step = linearised.step(longest)
+        period = now.orbit.period + (step.amounts[0] if step.amounts else 0.0)
+        tried = _tried(now, Orbit(step.vector, period, now.status_after))
+        fall = -np.inf if tried is None else (now.residual - tried.residual) / max(now.residual - step.left, 1e-300)
+        if tried is not None and (best is None or tried.residual < best.residual):
+            best = tried
+        if fall < BADLY:
+            longest = SHORTER * min(longest, step.length)
+        elif fall > WELL and step.length > 0.8 * longest:
+            longest *= LONGER
+        if fall > VAINLY:
+            break
     if best is None:
         raise MarchEnded("no step of the method could be marched")
-    return best
+    return best, longest
 
 
-class Condition(NamedTuple):
-    """A linear equation for the change of an orbit: products of both with the changes sum up to `right`.
-
-    Attributes
-    ----------
-    state : ndarray
-        Vector for the change of the state, in the product of energy.
-    factors : list of float
-        Factors of the other changes.
-    right : float, optional
-        Right side.
-    """
-
-    state: Array
-    factors: list[float]
-    right: float = 0.0
-
-
-class NewtonStep(NamedTuple):
-    """A step of Newton's method.
-
-    Attributes
-    ----------
-    begun, target : ndarray
-        The vector of the orbit, and that at which the linearised motion is periodic.
-    amounts : list of float
-        Changes of the other unknowns.
-    """
-
-    begun: Array
-    target: Array
-    amounts: list[float]
-
-    def vector(self, share: float) -> Array:
-        """Return the vector after a share of the step."""
-        return np.asarray(self.begun + share * (self.target - self.begun))
-
-
-def newton_step(
-    now: Return, others: Sequence[Array], conditions: Sequence[Condition], seeds: Sequence[Array] = ()
-) -> NewtonStep:
-    """Return the step to the orbit whose linearised motion is periodic and fulfils other conditions.
-
-    Parameters
-    ----------
-    now : Return
-        The orbit and its march.
-    others : sequence of ndarray
-        Derivatives of the state after the period with respect to other unknowns, such as the period.
-    conditions : sequence of Condition
-        As many conditions.
-    seeds : sequence of ndarray, optional
-        Directions from which the solution is sought, besides the difference that a period makes.
-    """
-    count, counted = now.vectors.count, now.vectors.counted
-    missing = counted(now.missing)
-    columns = np.array([counted(one) for one in others]).reshape(len(others), missing.size).T
-    states = [counted(one.state) for one in conditions]
-    below = np.array([one.factors for one in conditions]).reshape(len(conditions), len(others))
-    right = np.append(-missing, [one.right for one in conditions])
-    directions: list[Array] = []
-    products: list[Array] = []
-    solution = np.zeros(len(others))
-    for direction, product in _krylov(now, [now.missing, *seeds]):
-        directions.append(direction)
-        products.append(product)
-        changes = np.array([counted(b - a) for a, b in zip(directions, products, strict=True)]).T
-        along = np.array([[one @ counted(direction) for direction in directions] for one in states])
-        matrix = np.block([[changes, columns], [along.reshape(len(states), len(directions)), below]])
-        scale = np.linalg.norm(matrix, axis=0)
-        scale[scale == 0.0] = 1.0
-        solution = np.linalg.lstsq(matrix / scale, right, rcond=1e-13)[0] / scale
-        if np.linalg.norm(matrix @ solution - right) < LINEAR * np.linalg.norm(missing):
-            break
-    start, end = now.orbit.vector.copy(), now.end.copy()
-    for amount, direction, product in zip(solution, directions, products, strict=False):
-        start += amount * direction
-        end += amount * product
-    amounts = solution[len(directions) :].tolist()
-    for amount, change in zip(amounts, others, strict=True):
-        end += amount * change
-    # All that contacts carry follows the march.
-    return NewtonStep(now.orbit.vector, np.concatenate([start[: 2 * count], end[2 * count :]]), amounts)
-
-
-def _krylov(now: Return, seeds: Sequence[Array]) -> Iterator[tuple[Array, Array]]:
-    """Yield directions, orthogonal in the norm of energy, with the products by the derivative that span them."""
-    counted, norm = now.vectors.counted, now.vectors.norm
-    directions: list[Array] = []
-    waiting = list(seeds)
-    while waiting and len(directions) < MOST_PRODUCTS:
-        direction = waiting.pop(0)
-        before = norm(direction)
-        for _ in range(2):
-            for one in directions:
-                direction = direction - one * (counted(one) @ counted(direction))
-        size = norm(direction)
-        if size > ROUND_OFF * before:
-            directions.append(direction / size)
-            waiting.append(now.product(directions[-1]))
-            yield directions[-1], waiting[-1]
+def _tried(now: Return, orbit: Orbit) -> Return | None:
+    """Return an orbit and its march, None if it cannot be marched."""
+    if not 1.0 / CHANGE < orbit.period / now.orbit.period < CHANGE:
+        return None
+    try:
+        tried = Return.of(now.of_period, now.vectors, orbit)
+    except MarchEnded:
+        return None
+    return tried if np.isfinite(tried.residual) else None

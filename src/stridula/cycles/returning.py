@@ -12,8 +12,9 @@ from ..arrays import Array
 from ..integration.period_map import Passed, PeriodMap
 from ..integration.state_vectors import StateVectors
 
-# Size of perturbations relative to that of the motion.
-PERTURBED = 1e-6
+# Size of perturbations relative to that of the motion, and to its residual where this is larger: where contacts jump,
+# the derivative is that over the distance to the periodic motion.
+PERTURBED, OF_RESIDUAL = 1e-6, 0.1
 
 
 class Orbit(NamedTuple):
@@ -112,9 +113,9 @@ class Return:
         change = self._of_modes(self.passed.state.modal - self.passed.before.modal)
         return change / self.vectors.norm(change)
 
-    def product(self, direction: Array) -> Array:
+    def product(self, direction: Array, of_residual: float = OF_RESIDUAL) -> Array:
         """Return the derivative of the state after the period in a direction of its start."""
-        amount = PERTURBED * self.size / self.vectors.norm(direction)
+        amount = max(PERTURBED, of_residual * self.residual) * self.size / self.vectors.norm(direction)
         state = self.vectors.state(self.orbit.vector + amount * direction, self.step, self.orbit.status)
         passed = self.of_period.after(state, self.orbit.period)
         return (self.vectors.vector(passed.state, self.step) - self.end) / amount

@@ -31,6 +31,7 @@ from ..lowering.signals import later
 from ..records.state import State
 from ..system import System
 from .drive_periods import drive_period, settled_at
+from .means import repeating
 from .returning import Orbit
 
 # Periods in which a motion may come back; how much nearer it must come after more than one, unless it is as near as
@@ -135,7 +136,10 @@ def beginning_of(
     if not isinstance(start, xr.Dataset) and not settle:
         # A start has no past, which contacts carry; the motion that drives prescribe needs a whole period.
         orbit = _later(of_period, vectors, orbit, 1 if driven else PAST / steps)
-    return Beginning(of_period, vectors, _later(of_period, vectors, orbit, settle or 0), driven is not None)
+    orbit = _later(of_period, vectors, orbit, settle or 0)
+    if isinstance(start, xr.Dataset) and "period" not in start:
+        orbit = repeating(of_period, vectors, orbit, driven is not None)
+    return Beginning(of_period, vectors, orbit, driven is not None)
 
 
 def _started(system: System, start: InitialEquilibrium) -> System:

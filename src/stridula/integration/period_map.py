@@ -97,7 +97,7 @@ class PeriodMap:
         march = March([blocks], [_without_energies(state)], step, 1, self.solve)
         imposed = Impositions(self.arrays, blocks, step)
         self.counter.marched += steps / self.steps
-        ends = sorted({*np.linspace(0, steps, INSTANTS + 1).round().astype(int)[1:].tolist(), max(steps - 1, 1)})
+        ends = sorted({*(np.arange(1, INSTANTS + 1) * steps // INSTANTS).tolist(), steps - 1} - {0})
         states, sizes, first = [march.states[0]], [], 0
         for end in ends:
             count = end - first

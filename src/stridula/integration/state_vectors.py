@@ -131,7 +131,7 @@ class StateVectors:
 
     @cached_property
     def _root(self) -> Array:
-        """Root of the stiffness of the coupled modes, with that of the period added."""
-        slowest = (2.0 * np.pi / self.period) ** 2
-        stiffness = self.arrays.stiffness + slowest * np.eye(self.arrays.coupled)
+        """Root of the stiffness of the coupled modes, with that of the period added where they have mass."""
+        has_mass = ~self.arrays.massless[: self.arrays.coupled]
+        stiffness = self.arrays.stiffness + np.diag(np.where(has_mass, (2.0 * np.pi / self.period) ** 2, 0.0))
         return np.asarray(np.linalg.cholesky(stiffness).T)

@@ -1,5 +1,6 @@
 """Types of the public names, which `__init__.py` imports on first use."""
 
+from .basins import basin as basin
 from .branches import follow_cycle as follow_cycle
 from .calibration import CalibrationProgress as CalibrationProgress
 from .calibration import Target as Target
@@ -10,6 +11,7 @@ from .ensembles import mean_and_interval as mean_and_interval
 from .ensembles import share_of as share_of
 from .loci import critical_value as critical_value
 from .loci import root_loci as root_loci
+from .orbit_diagrams import orbit_diagram as orbit_diagram
 from .points import Grid as Grid
 from .points import LatinHypercube as LatinHypercube
 from .points import Range as Range

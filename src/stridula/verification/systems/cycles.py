@@ -114,7 +114,7 @@ class _Passed:
 
 @dataclass(frozen=True)
 class OneContact:
-    """Two coordinates with one contact spring: ``q'' + C q' + K q = f + g cos(w t) + p N``, ``N = k max(d q - gap, 0)``.
+    """Two coordinates with a contact spring: ``q'' + C q' + K q = f + g cos(w t) + p N``, ``N = k max(d q - gap, 0)``.
 
     Attributes
     ----------
@@ -208,7 +208,7 @@ class OneContact:
         for _ in range(MOST_STEPS):
             found = self.passed(state, period)
             missing = found.end - state
-            if np.linalg.norm(missing) < CLOSED * max(np.linalg.norm(state), 1e-3):
+            if np.linalg.norm(missing) < CLOSED * max(float(np.linalg.norm(state)), 1e-3):
                 return self._described(period, found)
             matrix = found.derivative - np.eye(4)
             if self.angular:
@@ -229,15 +229,15 @@ class OneContact:
         expected = 2.0 * pi / (self.angular or abs(self.sliding()[0].imag))
         settled = SETTLED * expected
         state = solve_ivp(rates, (0.0, settled), start, t_eval=[settled], **SETTLING).y[:, -1]
-        times = np.linspace(settled, settled + RETURNS * expected, 2001)
+        multiples = settled + expected * np.arange(1, int(RETURNS) + 1)
+        times = np.union1d(np.linspace(settled, settled + RETURNS * expected, 2001), multiples)
         passed = solve_ivp(rates, times[[0, -1]], state, t_eval=times, **SETTLING).y
         distance = np.linalg.norm(passed - state[:, None], axis=0)
         if self.angular:
-            back = np.array([np.interp(settled + n * expected, times, distance) for n in (1, 2, 3, 4)])
-            chosen = np.flatnonzero(back < NEAR * distance.max())
-            if not chosen.size:
+            near = np.flatnonzero(distance[np.searchsorted(times, multiples)] < NEAR * distance.max())
+            if not near.size:
                 raise NotPeriodic("the motion does not come back")
-            return state, float((chosen[0] + 1) * expected)
+            return state, float((near[0] + 1) * expected)
         lowest = 1 + np.flatnonzero((distance[1:-1] < distance[:-2]) & (distance[1:-1] <= distance[2:]))
         lowest = lowest[distance[lowest] < NEAR * distance.max()]
         if not lowest.size or np.ptp(passed[0]) < 1e-6:
@@ -245,7 +245,7 @@ class OneContact:
         return state, float(times[lowest[0]] - settled)
 
     def _described(self, period: float, found: _Passed) -> Cycle:
-        multipliers = np.linalg.eigvals(found.derivative)
+        multipliers = np.linalg.eigvals(found.derivative).astype(complex)
         if not self.angular:
             multipliers = np.delete(multipliers, np.argmin(np.abs(multipliers - 1.0)))
         return Cycle(
@@ -285,8 +285,9 @@ class LiftingMass:
     @property
     def stiffness(self) -> Array:
         """Matrix of the springs to the ground [N/m]."""
-        rays = [stiffness * np.outer(ray, ray) for stiffness, turn in self.grounded for ray in [(cos(turn), sin(turn))]]
-        return np.asarray(sum(rays))
+        turns = [turn for _, turn in self.grounded]
+        rays = np.array([np.cos(turns), np.sin(turns)])
+        return np.asarray(rays * [stiffness for stiffness, _ in self.grounded] @ rays.T)
 
     def system(self) -> System:
         """Return its system, which starts beside the equilibrium of sliding."""
@@ -319,8 +320,17 @@ class LiftingMass:
         )
 
     def cycle(self) -> Cycle:
-        """Return its cycle."""
-        return self.equations().cycle(self._start())
+        """Return its cycle.
+
+        Raises
+        ------
+        NotPeriodic
+            If the motion does not come back, or if the mass becomes as fast as the belt.
+        """
+        found = self.equations().cycle(self._start())
+        if np.diff(found.places[:, 0]).min() <= -self.belt * found.times[1]:
+            raise NotPeriodic("the mass is as fast as the belt")
+        return found
 
     def _start(self) -> Array:
         equations = self.equations()
