@@ -366,6 +366,53 @@ def stability(
     print_loci(name, vary, overrides, highest, out, plot, **options)
 
 
+CycleStart = Annotated[
+    str | None,
+    typer.Option("--from", metavar="RUN.nc", help="Start from a record; else from a run of the scenario."),
+]
+ModeAmplitude = Annotated[
+    str | None, typer.Option(metavar="M", help="Start from the mode that grows fastest, with this amplitude.")
+]
+
+
+@app.command()
+def cycle(
+    name: NameOrFile,
+    set_: Set = None,
+    from_: CycleStart = None,
+    amplitude: ModeAmplitude = None,
+    frequency: Annotated[str | None, typer.Option(metavar="HZ", help="Expected frequency of the cycle.")] = None,
+    out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the record of the cycle, as NetCDF.")] = None,
+    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the Floquet multipliers.")] = None,
+) -> None:
+    """Find a limit cycle directly: its frequency, amplitude and stability."""
+    with _importing():
+        from .cycling import print_cycle
+
+    print_cycle(name, _pairs(set_ or []), from_, amplitude, frequency, out, plot)
+
+
+@app.command()
+def follow(
+    name: NameOrFile,
+    over: Annotated[str, typer.Option(metavar="KEY=LOW:HIGH", help="Parameter and its range.")],
+    at: Annotated[str | None, typer.Option(metavar="VALUE", help="Value at the first cycle; default: LOW.")] = None,
+    set_: Set = None,
+    from_: CycleStart = None,
+    amplitude: ModeAmplitude = None,
+    points: Annotated[int, typer.Option(metavar="N", help="Most points in each direction.")] = 100,
+    out: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write the branch, as NetCDF; continued if it was begun.")
+    ] = None,
+    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the branch.")] = None,
+) -> None:
+    """Follow a limit cycle over a parameter, through folds, with its stability."""
+    with _importing():
+        from .cycling import print_branch
+
+    print_branch(name, over, at, _pairs(set_ or []), from_, amplitude, points, out, plot)
+
+
 @app.command()
 def animate(
     name: Annotated[

@@ -12,7 +12,7 @@ from .returning import Return
 # Most products for the multipliers, and largest error of those that are returned.
 MOST_PRODUCTS, LARGEST_ERROR = 200, 1e-3
 # Distance of the multiplier along the cycle from 1 above which it has not been found.
-FOUND = 0.2
+FOUND = 0.02
 # Norm of what a product adds, relative to the product, below which all multipliers have been found.
 COMPLETE = 1e-7
 # Imaginary part, relative to its size, below which a multiplier is real.
@@ -91,7 +91,7 @@ class Multipliers:
     def verdict(self) -> str:
         """Stability in words."""
         if not self.are_known:
-            return "unknown: the multipliers were not found"
+            return "unknown: no multiplier is near 1, as that along the cycle must be"
         size = f"{abs(self.leading):.4g}"
         if self.is_stable and abs(self.leading) >= 1.0 - MARGIN:
             return "stable: neighbouring motions neither depart nor all return, as without damping"

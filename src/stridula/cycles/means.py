@@ -18,7 +18,7 @@ FAR = 0.05
 
 
 def repeating(of_period: PeriodMap, vectors: StateVectors, orbit: Orbit, is_driven: bool) -> Orbit:
-    """Return an orbit or, if that is nearer to a periodic one, the mean of the motion at the same phase of many periods.
+    """Return an orbit or, if that is nearer to a periodic one, the mean at the same phase of many periods.
 
     Of all tones, only the harmonics of the period remain in such a mean. The period is that of the strongest of them.
 

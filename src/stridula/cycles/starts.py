@@ -35,8 +35,8 @@ from .means import repeating
 from .returning import Orbit
 
 # Periods in which a motion may come back; how much nearer it must come after more than one, unless it is as near as
-# this share of its largest distance.
-RETURNS, NEARER, NEAR = 4.3, 3.0, 0.02
+# this share of its largest distance; the same where drives prescribe the time.
+RETURNS, NEARER, NEAR, ROUND_OFF = 4.3, 3.0, 0.02, 1e-7
 # Share of the expected period before which a motion does not count as back.
 SOONEST = 0.3
 # Periods for which a system runs from its own start.
@@ -215,11 +215,7 @@ def _at_whole_period(flat: Assembly, settings: Settings, motion: _Motion, period
     steps = ceil(left / motion.step)
     step = left / steps
     waiting = _since(flat, motion.time)
-    vectors = StateVectors(flat, period)
-    state = vectors.state(vectors.vector(motion.state, motion.step), step, vectors.status(motion.state))
-    state.carried[:, :] = carried_on(
-        flat, state, flat.motion(np.array([motion.time]), step)[0] - motion.imposed
-    ).carried
+    state = _in_steps(flat, StateVectors(flat, period), motion, step).state
     march, imposed = _march(waiting, settings, state, step)
     chunk = march.advance([imposed.on(0, steps)], steps)[0]
     if chunk.completed < steps:
@@ -242,13 +238,15 @@ def _march(flat: Assembly, settings: Settings, state: State, step: float) -> tup
 def _returned(flat: Assembly, settings: Settings, motion: _Motion, period: float, driven: float | None) -> float:
     """Return the time after which a motion comes back to its state [s], near a multiple of the expected period."""
     vectors = StateVectors(flat, period)
+    if driven is not None:
+        motion = _in_steps(flat, vectors, motion, driven / ceil(driven / motion.step))
     steps = ceil(RETURNS * period / motion.step)
     distances = np.array(list(_distances(flat, settings, motion, vectors, steps)))
     times = motion.step * np.arange(1, steps + 1)
     if driven is not None:
-        multiples = np.arange(1, int(RETURNS) + 1)
-        near = np.array([np.interp(m * driven, times, distances) for m in multiples])
-        return float(multiples[np.argmax(near <= NEARER * near.min())] * driven)
+        each = round(driven / motion.step)
+        near = distances[each - 1 :: each]
+        return float((1 + np.argmax(near <= max(NEARER * near.min(), ROUND_OFF * distances.max()))) * driven)
     first, second = np.diff(distances**2), np.diff(distances**2, 2)
     back = 1 + np.flatnonzero((first[:-1] <= 0.0) & (first[1:] > 0.0) & (times[1:-1] > SOONEST * period))
     if not back.size:
@@ -258,6 +256,13 @@ def _returned(flat: Assembly, settings: Settings, motion: _Motion, period: float
     lowest = np.sqrt(np.maximum(distances[back] ** 2 - 0.5 * second[back - 1] * shift**2, 0.0))
     chosen = np.argmax(lowest <= max(NEARER * lowest.min(), NEAR * distances.max()))
     return float(times[back[chosen]] + shift[chosen] * motion.step)
+
+
+def _in_steps(flat: Assembly, vectors: StateVectors, motion: _Motion, step: float) -> _Motion:
+    """Return a motion in steps of another length."""
+    state = vectors.state(vectors.vector(motion.state, motion.step), step, vectors.status(motion.state))
+    imposed = flat.motion(np.array([motion.time]), step)[0]
+    return _Motion(carried_on(flat, state, imposed - motion.imposed), step, motion.time, imposed)
 
 
 def _distances(

@@ -27,7 +27,7 @@ from .sources import check_takes, in_si, made_once
 from .task import one_thread_each
 
 # Recorded samples of a run at most, unless a rate is given, and largest rate [Hz].
-SAMPLES, HIGHEST_RATE = 20_000, 20e3
+SAMPLES, HIGHEST_RATE = 5000, 20e3
 # Difference of the amplitudes of two classes, and change within the time evaluated, relative to the largest amplitude.
 APART, CHANGING = 0.1, 0.02
 DISPLACEMENT, VELOCITY = "displacement", "velocity"
@@ -84,7 +84,7 @@ def basin(
         Whether to show a bar on standard error with the simulated time of all runs.
     **settings
         Settings of the runs, as of `simulate`, in place of those of the scenario or the function. Without a
-        `sample_rate`, a run has at most 20 000 samples.
+        `sample_rate`, a run has at most 5000 samples.
 
     Returns
     -------

@@ -11,7 +11,7 @@ import xarray as xr
 from ..arrays import Array
 from ..cycles import limit_cycle
 from ..drives import InitialEquilibrium
-from ..lowering.schemes import Scheme
+from ..lowering.schemes import ExactModal, Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
@@ -66,8 +66,8 @@ class Way:
 
 
 def ways(scheme: Scheme, fine: float) -> list[Way]:
-    """Return the ways of the two bars: with the default step of a scheme, and with a fine one [s]."""
-    return [Way(scheme, None), Way(scheme, fine)]
+    """Return the ways of the two bars: at default settings (exact modal), with a fine step [s]."""
+    return [Way(scheme, None), Way(scheme, fine)] if isinstance(scheme, ExactModal) else [Way(scheme, fine)]
 
 
 def multipliers_of(cycle: xr.Dataset) -> Array:
@@ -272,9 +272,11 @@ def den_hartog_cycle() -> Outcome:
             yield way.row("amplitude", rubbed.amplitude, highest(places), rubbed.amplitude, "m")
             product = float(np.prod(nearest(rubbed.multipliers, multipliers_of(cycle))).real)
             yield way.row("product of both multipliers", rubbed.product, product, rubbed.product)
-            yield from way.multipliers(rubbed.multipliers, cycle)
             if way.step is None:
+                # Their phase changes with the place of a reversal within its step, of first order.
                 curves.append(drawn(cycle, places, scheme.name))
+            else:
+                yield from way.multipliers(rubbed.multipliers, cycle)
         counts = (100, 200, 400, 800)
         yield order_row(
             "amplitude",
