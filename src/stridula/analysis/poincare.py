@@ -32,8 +32,8 @@ def poincare_section(
 ) -> xr.Dataset:
     """Return the values of a record where a signal crosses a level, or once in each period.
 
-    Cycles have as many points as crossings in a period, tori have closed curves, chaos has more. Values are interpolated
-    linearly between samples: the error is about an eighth of the square of the phase between two samples.
+    Cycles have as many points as crossings in a period, tori have closed curves, chaos has more. Values are
+    interpolated linearly between samples: the error is up to an eighth of the square of the phase between two samples.
 
     Parameters
     ----------

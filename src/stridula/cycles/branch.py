@@ -25,7 +25,7 @@ MOST_STEPS, EASY = 10, 4
 # Factors of the distance to the next point after an easy point and after one that was not found.
 LONGER, SHORTER = 1.4, 0.4
 # Shortest distance to the next point, relative to the longest.
-SHORTEST = 3e-3
+SHORTEST = 3e-4
 # Steps of a period may be this much longer or shorter than the first ones.
 COARSER, FINER = 1.3, 0.6
 

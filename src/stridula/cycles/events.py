@@ -51,15 +51,17 @@ def events_between(branch: Branch, points: Sequence[Point], multipliers_of: Mult
     branch : Branch
         The branch.
     points : sequence of Point
-        Its last points, three of them if there are as many.
+        Its last points, four of them if there are as many.
     multipliers_of : callable
         Function of a point that returns its multipliers.
     """
     *_, before, last = points
     if last.is_round_corner:
-        return [Event.at(GRAZING, before)]
+        return []
+    if before.is_round_corner:
+        return [_corner(*points)]
     found = []
-    if len(points) > 2 and _turns_back(*points[-3:]) and not before.is_round_corner:
+    if len(points) > 2 and _turns_back(*points[-3:]):
         found.append(Event.at(FOLD, _fold(branch, *points[-3:])))
     stable = [multipliers_of(one).is_stable for one in (before, last)]
     if stable[0] != stable[1]:
@@ -68,6 +70,15 @@ def events_between(branch: Branch, points: Sequence[Point], multipliers_of: Mult
         if change.kind != FOLD:
             found.append(change)
     return found
+
+
+def _corner(first: Point, second: Point, third: Point, last: Point) -> Event:
+    """Return the corner at which the lines through two points before it and two points after it meet."""
+    sizes = np.array([one.cycle.size for one in (first, second, third, last)])
+    values = np.array([one.value for one in (first, second, third, last)])
+    before, after = (values[1] - values[0]) / (sizes[1] - sizes[0]), (values[3] - values[2]) / (sizes[3] - sizes[2])
+    size = (values[2] - values[1] + before * sizes[1] - after * sizes[2]) / (before - after)
+    return Event(GRAZING, float(values[1] + before * (size - sizes[1])), 1.0 / second.cycle.orbit.period)
 
 
 def birth(points: Sequence[Point]) -> Event:

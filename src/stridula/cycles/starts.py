@@ -36,7 +36,7 @@ from .returning import Orbit
 
 # Periods in which a motion may come back; how much nearer it must come after more than one, unless it is as near as
 # this share of its largest distance; the same where drives prescribe the time.
-RETURNS, NEARER, NEAR, ROUND_OFF = 4.3, 3.0, 0.02, 1e-7
+RETURNS, NEARER, NEAR, NEAR_DRIVEN = 4.3, 3.0, 0.02, 1e-3
 # Share of the expected period before which a motion does not count as back.
 SOONEST = 0.3
 # Periods for which a system runs from its own start.
@@ -246,7 +246,7 @@ def _returned(flat: Assembly, settings: Settings, motion: _Motion, period: float
     if driven is not None:
         each = round(driven / motion.step)
         near = distances[each - 1 :: each]
-        return float((1 + np.argmax(near <= max(NEARER * near.min(), ROUND_OFF * distances.max()))) * driven)
+        return float((1 + np.argmax(near <= max(NEARER * near.min(), NEAR_DRIVEN * distances.max()))) * driven)
     first, second = np.diff(distances**2), np.diff(distances**2, 2)
     back = 1 + np.flatnonzero((first[:-1] <= 0.0) & (first[1:] > 0.0) & (times[1:-1] > SOONEST * period))
     if not back.size:

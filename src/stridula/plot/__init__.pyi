@@ -7,9 +7,9 @@ from .colours import LINE as LINE
 from .colours import LINES as LINES
 from .colours import STATUS_COLOURS as STATUS_COLOURS
 from .directivities import directivity as directivity
-from .files import save as save
 from .dynamics import basin as basin
 from .dynamics import orbit_diagram as orbit_diagram
+from .files import save as save
 from .films import animate as animate
 from .laws import friction as friction
 from .loci import root_loci as root_loci

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.colors import BoundaryNorm, ListedColormap, to_rgb
@@ -14,7 +16,7 @@ from ..checks import ArgumentError, instance, listed
 from .colours import FAILED_COLOUR, LINE, LINES, REGIME_COLOURS
 from .maps import edges
 
-# Colours and marks of sweeps: those of a falling value are rings, so that both are seen where they agree.
+# Colours and marks of sweeps: those of a falling value are rings below the others, so that both are seen.
 SWEEPS = {"up": (LINE, "."), "down": (LINES[1], "o"), "anew": (LINES[2], ".")}
 UNSETTLED = "white"
 # Share of white by which each further motion of a regime is paler.
@@ -52,14 +54,16 @@ def orbit_diagram(found: xr.Dataset) -> Figure:
         points = orbit.values[:, number]
         places = np.broadcast_to(found[key].values[:, None], points.shape)
         known = np.isfinite(points)
-        size = {"markersize": 2.0 if mark == "." else 3.5, "markeredgewidth": 0.5}
-        axes.plot(places[known], points[known], mark, color=colour, fillstyle="none", rasterized=True, **size)
-        shown = {"markersize": 6.0} if mark == "o" else {"markersize": 7.0}
-        handles.append(Line2D([], [], linestyle="", marker=mark, color=colour, fillstyle="none", label=sweep, **shown))
+        is_ring = mark == "o"
+        look: dict[str, Any] = {"color": colour, "fillstyle": "none" if is_ring else "full", "markeredgewidth": 0.6}
+        size = 3.5 if is_ring else 2.5
+        order = 2.0 if is_ring else 3.0
+        axes.plot(places[known], points[known], mark, markersize=size, zorder=order, rasterized=True, **look)
+        handles.append(Line2D([], [], linestyle="", marker=mark, markersize=6.0, label=sweep, **look))
     axes.grid(alpha=0.3, linewidth=0.5)
     axes.set_xlabel(_with_units(key, found[key]))
     axes.set_ylabel(_with_units(str(orbit.attrs.get("long_name", "orbit")), orbit))
-    axes.set_title(str(found.attrs.get("title", found.attrs.get("take", ""))), fontsize=10)
+    axes.set_title(str(found.attrs.get("title", "")), fontsize=10)
     axes.legend(handles=handles, loc="best", fontsize=8, frameon=False)
     return figure
 
@@ -93,7 +97,7 @@ def basin(found: xr.Dataset) -> Figure:
     axes = figure.subplots()
     numbers = np.where(found["message"].values != "", -2, found["attractor"].values)
     labels = ["failed", "not settled"]
-    colours = [FAILED_COLOUR, UNSETTLED]
+    colours: list[Any] = [FAILED_COLOUR, UNSETTLED]
     seen: dict[str, int] = {}
     motions = zip(found["attractor_regime"].values, found["attractor_amplitude"].values, strict=True)
     for regime, amplitude in motions:

@@ -13,10 +13,10 @@ import xarray as xr
 from ..analysis.regimes import TAKEN, regime_of
 from ..arrays import Array
 from ..bodies import Body
-from ..checks import ArgumentError, brief, by_key, count, instance, listed, positive, within
+from ..checks import ArgumentError, brief, by_key, count, listed, positive, within
 from ..drives import InitialState
 from ..integration import simulate_many
-from ..integration.settings import Settings, settings_of
+from ..integration.settings import settings_of
 from ..records.plain import PlainRecord
 from ..records.variables import described
 from ..scenarios.load import Scenario

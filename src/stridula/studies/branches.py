@@ -269,7 +269,7 @@ class _Following:
                 if end == LIMIT:
                     edge = begun.high if point.value > begun.high else begun.low
                     points[-1] = branch.at(edge, point.cycle)
-                self.events += events_between(branch, points[-3:], self._multipliers)
+                self.events += events_between(branch, points[-4:], self._multipliers)
                 self._add(side, points[-1])
                 if end or len(rows) > most:
                     break
@@ -291,10 +291,10 @@ class _Following:
             save(self.dataset(), self.out)
 
     def _points(self, side: float) -> list[Point]:
-        """Return the points from which the branch is followed on: the last three, or the first one alone."""
+        """Return the points from which the branch is followed on: the last four, or the first one alone."""
         begun = self.begun
         found = [begun.first]
-        for one in self.rows[side][-3:]:
+        for one in self.rows[side][-4:]:
             value = float(one[self.key])
             if value != begun.first.value:
                 found.append(orbit_of_branch(one, self.key, begun.systems.assembly(value), begun.first.cycle))

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy.interpolate import CubicSpline
 
-from ..analysis.poincare import poincare_section
 from ..analysis.regimes import regime_of
 from ..arrays import Array
 from ..checks import ArgumentError, choice, count, instance, positive, within
@@ -37,6 +37,7 @@ SAMPLES, HIGHEST_RATE = 20_000, 20e3
 NEAREST = 50
 # Samples of a motion at least.
 FEWEST = 3
+WORDS = {MAXIMA: "maxima of the ", MINIMA: "minima of the ", BOTH: "extremes of the ", STROBE: "once a period: "}
 RESULTS = ("orbit", "regime", "message", "sweep", "extreme")
 
 
@@ -61,7 +62,7 @@ def orbit_diagram(
     The first run begins from the system's own start, each other from the end of the run at the neighbouring value:
     where motions coexist, the two sweeps show different ones, and the values at which they jump. Cycles have one
     point for each extreme in a period, tori and chaos bands of them. Where the period of the drives changes, their
-    phase goes on, to half a step.
+    phase goes on, to a small part of a sample interval.
 
     Parameters
     ----------
@@ -138,7 +139,7 @@ def orbit_diagram(
             found[sweep] = passed[::-1] if sweep == DOWN else passed
     origin = {"function": name_of(source)} if callable(source) else origin_of(source, overrides)
     origin |= {"stridula_version": __version__, "parameter": key, "take": take}
-    return _dataset(found, grid, key, units, most).assign_attrs(origin)
+    return _dataset(found, grid, key, units, most, WORDS[take]).assign_attrs(origin)
 
 
 def _rising(values: Any) -> Array:
@@ -219,16 +220,16 @@ class _Runs:
 
     def _taken(self, run: xr.Dataset, period: float | None) -> _Taken:
         kind = next(name for name in PROBES if name in run)
-        ignored = self.transient * (float(run["time"][-1]) - float(run["time"][0]))
+        times = run["time"].values
+        ignored = self.transient * float(times[-1] - times[0])
+        late = times >= times[0] + ignored
         points = {}
         for number, label in enumerate(run[f"{kind}_probe"].values.tolist()):
-            one = run[kind][:, number]
+            values = run[kind].values[late, number]
             if self.take == STROBE:
-                section = poincare_section(run, period=period, start=ignored, variables=[kind])
-                points[label] = section[kind].values[:, number]
+                points[label] = _at_periods(times[late], values, period or 1.0)
             else:
-                late = one.values[run["time"].values >= float(run["time"][0]) + ignored]
-                points[label] = extremes(late, self.take)
+                points[label] = extremes(values, self.take)
         word = str(regime_of(run, start=ignored)["regime"])
         return _Taken(points, str(run[kind].attrs["units"]), kind, word, "")
 
@@ -254,13 +255,22 @@ def extremes(values: Array, take: str = BOTH) -> Array:
     return np.asarray(here[chosen] - 0.5 * slope**2 / bend)
 
 
+def _at_periods(times: Array, values: Array, period: float) -> Array:
+    """Return samples at whole periods since time 0, by cubic splines."""
+    at = np.arange(np.ceil(times[0] / period), np.floor(times[-1] / period) + 1.0) * period
+    at = at[(at >= times[0]) & (at <= times[-1])]
+    return np.asarray(CubicSpline(times, values)(at))
+
+
 def _in_phase(start: xr.Dataset, before: float, period: float, settled: float) -> xr.Dataset:
     """Return a record moved in time so that drives of another period go on in the phase in which it ends."""
-    step, last = float(start.attrs["step"]), int(start.attrs["last_step"])
+    step, last, ratio = (start.attrs[name] for name in ("step", "last_step", "steps_per_sample"))
+    interval = step * ratio
     phase = last * step / before % 1.0
     first = np.ceil(settled / period)
-    steps = (np.arange(first, first + NEAREST) + phase) * period / step
-    moved = int(np.round(steps[np.argmin(np.abs(steps - np.round(steps)))]))
+    # Runs begin at a whole number of sample intervals.
+    samples = (np.arange(first, first + NEAREST) + phase) * period / interval
+    moved = ratio * int(np.round(samples[np.argmin(np.abs(samples - np.round(samples)))]))
     return start.assign_coords(time=start["time"].values + (moved - last) * step).assign_attrs(last_step=moved)
 
 
@@ -282,7 +292,7 @@ def _told(progress: bool, key: str, runs: int) -> Iterator[Callable[[float, _Tak
         yield tell
 
 
-def _dataset(found: Mapping[str, list[_Taken]], grid: Array, key: str, units: str, most: int) -> xr.Dataset:
+def _dataset(found: Mapping[str, list[_Taken]], grid: Array, key: str, units: str, most: int, words: str) -> xr.Dataset:
     every = [one for passed in found.values() for one in passed]
     known = [one for one in every if one.points]
     if not known:
@@ -305,7 +315,7 @@ def _dataset(found: Mapping[str, list[_Taken]], grid: Array, key: str, units: st
 
     return xr.Dataset(
         {
-            "orbit": ((*both, "extreme"), orbit, described(known[0].units, f"{known[0].kind} of {label}")),
+            "orbit": ((*both, "extreme"), orbit, described(known[0].units, f"{words}{known[0].kind} of {label}")),
             "regime": (both, texts("regime"), described("1", "regime of the run")),
             "message": (both, texts("message"), described("1", "message of a failure, empty if none")),
         },
