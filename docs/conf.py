@@ -178,6 +178,7 @@ HOMES = {
     "analysis.mobilities": "Mobilities",
     "analysis.stability": "Linear stability",
     "bars": "Progress",
+    "cycles": "Limit cycles",
     "acoustics": "Radiated sound",
     "scenarios": "Scenarios",
     "studies": "Studies of many runs",

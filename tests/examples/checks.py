@@ -117,9 +117,17 @@ def check_surveys(names: Mapping[str, Any], printed: str) -> None:
     assert names["found"].verdict.sel(friction=0.6, angle=-60.0) == "stable"
 
 
+def check_cycles(names: Mapping[str, Any], printed: str) -> None:
+    """Both cycles have their known periods, and the branch ends where sliding loses its stability."""
+    assert float(names["cycle"].period) == pytest.approx(6.431383, rel=1e-4)
+    assert float(names["other"].period) == pytest.approx(6.285167, rel=1e-4)
+    assert printed.splitlines()[-2:] == ["grazing at 1.836 m/s", "Hopf at 1.151 m/s"]
+
+
 # Checks of at least one number, for pages that print any.
 CHECKS: dict[str, Callable[[Mapping[str, Any], str], None]] = {
     "README.md": check_readme,
+    "cycles.rst": check_cycles,
     "maps.rst": check_maps,
     "measures.rst": check_measures,
     "scenarios.rst": check_scenarios,
@@ -130,6 +138,7 @@ CHECKS: dict[str, Callable[[Mapping[str, Any], str], None]] = {
     "surveys.rst": check_surveys,
 }
 WRITTEN = {
+    "cycles.rst": {"branch.png", "multipliers.png"},
     "hearing.rst": {"ears.wav", "spectrogram.png", "spectrum.png", "squeal.gif"},
     "maps.rst": {"map.png", "root-loci.png"},
     "surveys.rst": {"survey.nc", "survey.png"},

@@ -11,7 +11,7 @@ from stridula.cycles.floquet import multipliers_of
 from stridula.cycles.linearised import Condition, Linearised
 from stridula.cycles.newton import closed_orbit
 from stridula.cycles.returning import Orbit, Return
-from stridula.cycles.starts import beginning_of
+from stridula.cycles.starts import Asked, beginning_of
 from stridula.integration.period_map import PeriodMap
 from stridula.integration.settings import Settings
 from stridula.integration.state_vectors import StateVectors
@@ -22,7 +22,7 @@ SETTINGS = Settings()
 
 
 def begun(system: st.System, start: xr.Dataset | None = None):
-    return beginning_of(system, start, SETTINGS, None, None)
+    return beginning_of(system, Asked(start, SETTINGS, None, None))
 
 
 def returned(system: st.System) -> Return:

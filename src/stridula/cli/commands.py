@@ -387,9 +387,9 @@ def cycle(
 ) -> None:
     """Find a limit cycle directly: its frequency, amplitude and stability."""
     with _importing():
-        from .cycling import print_cycle
+        from .cycling import Begin, print_cycle
 
-    print_cycle(name, _pairs(set_ or []), from_, amplitude, frequency, out, plot)
+    print_cycle(name, _pairs(set_ or []), Begin(from_, amplitude), frequency, out, plot)
 
 
 @app.command()
@@ -408,9 +408,9 @@ def follow(
 ) -> None:
     """Follow a limit cycle over a parameter, through folds, with its stability."""
     with _importing():
-        from .cycling import print_branch
+        from .cycling import Begin, Over, print_branch
 
-    print_branch(name, over, at, _pairs(set_ or []), from_, amplitude, points, out, plot)
+    print_branch(name, _pairs(set_ or []), Over(over, at, points), Begin(from_, amplitude), out, plot)
 
 
 @app.command()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -29,20 +29,47 @@ from .points import ranges_of
 SHOWN = 6
 
 
+class Begin(NamedTuple):
+    """Options of the start of a search.
+
+    Attributes
+    ----------
+    record : str or None
+        File of a record.
+    amplitude : str or None
+        Amplitude of the mode that grows fastest.
+    """
+
+    record: str | None
+    amplitude: str | None
+
+
+class Over(NamedTuple):
+    """Options of the parameter of a branch.
+
+    Attributes
+    ----------
+    words : str
+        Its key and range.
+    value : str or None
+        Value at the first cycle.
+    points : int
+        Most points in each direction.
+    """
+
+    words: str
+    value: str | None
+    points: int
+
+
 def print_cycle(
-    name: str,
-    overrides: dict[str, Any],
-    start: str | None,
-    amplitude: str | None,
-    frequency: str | None,
-    out: str | None,
-    plot: str | None,
+    name: str, overrides: dict[str, Any], begin: Begin, frequency: str | None, out: str | None, plot: str | None
 ) -> None:
     """Find a limit cycle of a scenario, print it, and optionally write its record or draw its multipliers."""
     check_outputs(out, plot)
     check_record(out)
     scenario = load_scenario(name, overrides)
-    begun = _start(scenario, name, start, amplitude)
+    begun = _start(scenario, name, begin)
     try:
         cycle = limit_cycle(
             scenario.system,
@@ -68,21 +95,18 @@ def print_cycle(
 
 def print_branch(
     name: str,
-    over: str,
-    value: str | None,
     overrides: dict[str, Any],
-    start: str | None,
-    amplitude: str | None,
-    points: int,
+    over: Over,
+    begin: Begin,
     out: str | None,
     plot: str | None,
 ) -> None:
     """Follow a limit cycle over a parameter, print its events, and optionally draw or write the branch."""
     check_outputs(out, plot)
     check_record(out)
-    ((key, span),) = ranges_of([over]).items()
+    ((key, span),) = ranges_of([over.words]).items()
     low, high = span.number(0.0), span.number(1.0)
-    first = low if value is None else _number(value, span.unit)
+    first = low if over.value is None else _number(over.value, span.unit)
     scenario = load_scenario(name, overrides | {key: f"{first!r} {span.unit}" if span.unit else first})
     try:
         branch = follow_cycle(
@@ -90,11 +114,11 @@ def print_branch(
             key,
             low,
             high,
-            _start(scenario, name, start, amplitude),
+            _start(scenario, name, begin),
             value=first,
             units=span.unit,
             overrides=overrides,
-            points=points,
+            points=over.points,
             scheme=scenario.scheme,
             step=scenario.step,
             contact_solve=scenario.contact_solve,
@@ -119,14 +143,14 @@ def _number(value: str, unit: str) -> float:
     return known[0]
 
 
-def _start(scenario: Scenario, name: str, start: str | None, amplitude: str | None) -> xr.Dataset | InitialEquilibrium:
+def _start(scenario: Scenario, name: str, begin: Begin) -> xr.Dataset | InitialEquilibrium:
     """Return the start of a search: a record, the mode that grows fastest, or the end of a run of the scenario."""
-    if start is not None and amplitude is not None:
-        raise ArgumentError("--amplitude", "be left out with --from", amplitude)
-    if start is not None:
-        return load(start)
-    if amplitude is not None:
-        return InitialEquilibrium(mode=MOST_UNSTABLE, amplitude=quantity(amplitude, "m", "--amplitude"))
+    if begin.record is not None and begin.amplitude is not None:
+        raise ArgumentError("--amplitude", "be left out with --from", begin.amplitude)
+    if begin.record is not None:
+        return load(begin.record)
+    if begin.amplitude is not None:
+        return InitialEquilibrium(mode=MOST_UNSTABLE, amplitude=quantity(begin.amplitude, "m", "--amplitude"))
     try:
         with bar(scenario.title or name) as show:
             return scenario.simulate(watchers=[told_of_time(show)])

@@ -9,7 +9,7 @@ from math import log10
 import numpy as np
 import xarray as xr
 
-from ..checks import ArgumentError, count, instance, positive, within
+from ..checks import instance
 from ..drives import InitialEquilibrium
 from ..integration.bars import bar
 from ..integration.contact_solve import GaussSeidel
@@ -22,7 +22,7 @@ from .cycle_record import cycle_record
 from .departures import departure
 from .floquet import multipliers_of
 from .newton import Found, Tell, closed_orbit
-from .starts import Beginning, beginning_of
+from .starts import Asked, Beginning, beginning_of
 
 # Rate of departure over a period above which a motion is chaotic, and below which it is a torus.
 CHAOTIC = 0.05
@@ -116,33 +116,17 @@ def limit_cycle(
     The residual then stays near the part of a period that a step is; give a larger `tolerance`, or a smaller `step`.
     """
     instance("system", system, System)
-    if start is not None:
-        instance("start", start, (xr.Dataset, InitialEquilibrium))
-    if isinstance(start, InitialEquilibrium) and start.mode is None:
-        raise ArgumentError("start", "have a mode and its amplitude", start)
-    if frequency is not None:
-        positive("frequency", frequency)
-    if settle is not None:
-        count("settle", settle, low=0)
-    within("tolerance", tolerance, 1e-13, 0.1)
     settings = Settings(scheme=scheme, step=step, probes=probes, contact_solve=contact_solve)  # type: ignore[arg-type]
-    settings.check()
+    asked = Asked(start, settings, frequency, settle, tolerance)
+    asked.check()
     with _told(progress, title or "limit cycle", tolerance) as tell:
-        found, is_driven = cycle_near(system, start, settings, frequency, settle, tolerance, tell)
+        found, is_driven = cycle_near(system, asked, tell)
         multipliers = multipliers_of(found.best, is_driven)
     return cycle_record(system, found.best, multipliers, settings, title, len(found.residuals) - 1)
 
 
-def cycle_near(
-    system: System,
-    start: xr.Dataset | InitialEquilibrium | None,
-    settings: Settings,
-    frequency: float | None,
-    settle: int | None,
-    tolerance: float,
-    tell: Tell,
-) -> tuple[Found, bool]:
-    """Return a periodic motion near a start, and whether drives prescribe its period; arguments as of `limit_cycle`.
+def cycle_near(system: System, asked: Asked, tell: Tell) -> tuple[Found, bool]:
+    """Return a periodic motion near a start, and whether drives prescribe its period.
 
     Raises
     ------
@@ -150,8 +134,8 @@ def cycle_near(
         If there is none.
     """
     try:
-        begun = beginning_of(system, start, settings, frequency, settle)
-        found = closed_orbit(begun.of_period, begun.vectors, begun.orbit, begun.is_driven, tolerance, tell)
+        begun = beginning_of(system, asked)
+        found = closed_orbit(begun.of_period, begun.vectors, begun.orbit, begun.is_driven, asked.tolerance, tell)
     except MarchEnded as error:
         raise NoCycle(f"no cycle: {error} within a period near the start") from None
     if not found.is_periodic:

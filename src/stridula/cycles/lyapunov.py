@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import islice
 
 import numpy as np
@@ -9,7 +10,7 @@ import xarray as xr
 
 from ..analysis.stability import sliding_stability
 from ..arrays import Array
-from ..checks import ArgumentError, count, instance, positive
+from ..checks import ArgumentError, count, instance
 from ..drives import InitialEquilibrium
 from ..integration.bars import bar
 from ..integration.contact_solve import GaussSeidel
@@ -19,7 +20,7 @@ from ..lowering.schemes import Scheme
 from ..records.variables import described
 from ..system import System
 from .departures import growths
-from .starts import Beginning, beginning_of
+from .starts import Asked, Beginning, beginning_of
 
 # Blocks of periods from which the error follows, and the share of all periods in which directions settle.
 BLOCKS, SETTLING = 20, 0.2
@@ -89,43 +90,30 @@ def lyapunov_exponent(
         If a march ends, as when its contact forces are not found.
     """
     instance("system", system, System)
-    if start is not None:
-        instance("start", start, (xr.Dataset, InitialEquilibrium))
-    if isinstance(start, InitialEquilibrium) and start.mode is None:
-        raise ArgumentError("start", "have a mode and its amplitude", start)
-    if frequency is not None:
-        positive("frequency", frequency)
-    if settle is not None:
-        count("settle", settle, low=0)
     count("periods", periods, low=2 * BLOCKS)
     instance("progress", progress, bool)
     settings = Settings(scheme=scheme, step=step, contact_solve=contact_solve)  # type: ignore[arg-type]
-    settings.check()
+    asked = Asked(start, settings, frequency, settle)
+    asked.check()
     try:
-        begun = _begun(system, start, settings, frequency, settle)
+        begun = _begun(system, asked)
         grown = _grown(begun, periods, progress)
     except MarchEnded as error:
         raise RuntimeError(f"no exponent: {error} within a period") from None
     return _dataset(grown, periods, begun.orbit.period)
 
 
-def _begun(
-    system: System,
-    start: xr.Dataset | InitialEquilibrium | None,
-    settings: Settings,
-    frequency: float | None,
-    settle: int | None,
-) -> Beginning:
+def _begun(system: System, asked: Asked) -> Beginning:
     """Return the motion whose neighbours are marched; without a pitch, in periods of the mode that decays slowest."""
     try:
-        return beginning_of(system, start, settings, frequency, settle)
+        return beginning_of(system, asked)
     except ArgumentError as error:
         if error.argument != "frequency":
             raise
         slowest = _slowest(system)
         if slowest is None:
             raise
-        return beginning_of(system, start, settings, slowest, settle)
+        return beginning_of(system, replace(asked, frequency=slowest))
 
 
 def _slowest(system: System) -> float | None:

@@ -13,7 +13,7 @@ import xarray as xr
 from ..analysis.regimes import regime
 from ..analysis.stability import stability_of
 from ..arrays import Array
-from ..checks import ArgumentError
+from ..checks import ArgumentError, count, instance, positive, within
 from ..drives import InitialEquilibrium
 from ..histories import Constant, Harmonic
 from ..integration.default_step import default_step
@@ -39,12 +39,52 @@ from .returning import Orbit
 RETURNS, NEARER, NEAR, NEAR_DRIVEN = 4.3, 3.0, 0.02, 1e-3
 # Share of the expected period before which a motion does not count as back.
 SOONEST = 0.3
+# Largest residual by default.
+TOLERANCE = 1e-9
 # Periods for which a system runs from its own start.
 PERIODS = 300
 # Samples of a period in that run.
 PER_PERIOD = 64
 # Fewest steps of a period, and steps after which contacts have a past.
 FEWEST, PAST = 20, 5
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A search for a cycle, as asked for in `limit_cycle`.
+
+    Attributes
+    ----------
+    start : xarray.Dataset, InitialEquilibrium or None
+        Start of the search.
+    settings : Settings
+        Settings of the march and of the record.
+    frequency : float or None
+        Expected frequency [Hz].
+    settle : int or None
+        Periods that are marched before the search.
+    tolerance : float, optional
+        Largest residual [1].
+    """
+
+    start: xr.Dataset | InitialEquilibrium | None
+    settings: Settings
+    frequency: float | None
+    settle: int | None
+    tolerance: float = TOLERANCE
+
+    def check(self) -> None:
+        """Raise ValueError at the first argument that no system allows."""
+        if self.start is not None:
+            instance("start", self.start, (xr.Dataset, InitialEquilibrium))
+        if self.start is not None and not isinstance(self.start, xr.Dataset) and self.start.mode is None:
+            raise ArgumentError("start", "have a mode and its amplitude", self.start)
+        if self.frequency is not None:
+            positive("frequency", self.frequency)
+        if self.settle is not None:
+            count("settle", self.settle, low=0)
+        within("tolerance", self.tolerance, 1e-13, 0.1)
+        self.settings.check()
 
 
 @dataclass(frozen=True)
@@ -89,14 +129,8 @@ class _Motion:
     imposed: Array
 
 
-def beginning_of(
-    system: System,
-    start: xr.Dataset | InitialEquilibrium | None,
-    settings: Settings,
-    frequency: float | None,
-    settle: int | None,
-) -> Beginning:
-    """Return the beginning of a search; arguments as of `limit_cycle`.
+def beginning_of(system: System, asked: Asked) -> Beginning:
+    """Return the beginning of a search.
 
     Raises
     ------
@@ -105,7 +139,8 @@ def beginning_of(
     MarchEnded
         If a march ends before the search.
     """
-    if isinstance(start, InitialEquilibrium):
+    start, settings, frequency, settle = asked.start, asked.settings, asked.frequency, asked.settle
+    if start is not None and not isinstance(start, xr.Dataset):
         system = _started(system, start)
     flat = assemble(system)
     _check(system, flat)
@@ -144,7 +179,7 @@ def beginning_of(
 
 def _started(system: System, start: InitialEquilibrium) -> System:
     """Return a system with another start, and with the values of its drives in the end."""
-    kept = [_settled(one) for one in system.drives if not isinstance(one, InitialEquilibrium)]
+    kept = [_settled(one) for one in system.drives if one is not system.initial_equilibrium]
     return System(system.contact, [*kept, start], system.connections)
 
 
@@ -158,7 +193,7 @@ def _check(system: System, flat: Assembly) -> None:
 def _settled(drive: Any) -> Any:
     """Return a drive with the value that it has in the end, if it has one."""
     history = getattr(drive, "history", None)
-    if history is None or history.settled is None or isinstance(history, Constant):
+    if history is None or not history.settled:
         return drive
     last = float(history.factor(np.array([history.settled]))[0])
     return replace(drive, history=Constant() if last == 1.0 else Harmonic(1.0, amplitude=0.0, mean=last))
@@ -283,7 +318,7 @@ def _later(of_period: PeriodMap, vectors: StateVectors, orbit: Orbit, periods: f
     """Return a motion some periods later."""
     step = orbit.period / of_period.steps
     state, steps = vectors.state(orbit.vector, step, orbit.status), round(periods * of_period.steps)
-    for count in [of_period.steps] * (steps // of_period.steps) + [steps % of_period.steps]:
-        if count:
-            state = of_period.after(state, orbit.period, count).state
+    for passed in [of_period.steps] * (steps // of_period.steps) + [steps % of_period.steps]:
+        if passed:
+            state = of_period.after(state, orbit.period, passed).state
     return Orbit(vectors.vector(state, step), orbit.period, vectors.status(state))

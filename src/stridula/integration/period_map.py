@@ -52,7 +52,13 @@ class Passed(NamedTuple):
 
 @dataclass
 class Counter:
-    """The number of periods marched."""
+    """A count that several maps share.
+
+    Attributes
+    ----------
+    marched : float
+        Number of periods marched.
+    """
 
     marched: float = 0.0
 

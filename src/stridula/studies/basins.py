@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -174,20 +174,23 @@ class _Made:
 
     Attributes
     ----------
-    systems : list of System or str
-        The system of each start, or the message of why there is none.
+    systems : dict of System
+        Systems by the number of their start.
     duration : float
         Time to simulate [s].
     settings : dict
         Settings of the runs.
     title : str
         Name of the scenario or the function.
+    messages : dict of str
+        Messages of why there is no system, by the number of the start.
     """
 
-    systems: list[System | str]
+    systems: dict[int, System]
     duration: float
     settings: dict[str, Any]
     title: str = ""
+    messages: dict[int, str] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -201,7 +204,7 @@ class _Made:
     ) -> _Made:
         """Return the systems of a source at each start; arguments as of `basin`."""
         timing = {} if duration is None else {"duration": positive("duration", duration)}
-        if isinstance(source, System):
+        if hasattr(source, "contacts"):
             if fixed:
                 raise ArgumentError("overrides", "be left out for a system", dict(fixed))
             if duration is None:
@@ -216,18 +219,20 @@ class _Made:
         if body is not None:
             raise ArgumentError("body", "be left out for a function, which sets the start", body)
         check_takes(source, [*fixed, *starts[0]])
-        made: list[Scenario | str] = []
-        for values in starts:
+        made: dict[int, Scenario] = {}
+        messages: dict[int, str] = {}
+        for number, values in enumerate(starts):
             try:
-                made.append(made_once(source, {**fixed, **values}, timing))
+                made[number] = made_once(source, {**fixed, **values}, timing)
             except ValueError as error:
-                made.append(message_of(error))
-        known = [one for one in made if isinstance(one, Scenario)]
-        if not known:
-            raise ValueError(made[0])
-        first = known[0]
-        systems = [one if isinstance(one, str) else one.system for one in made]
-        return cls(systems, first.duration, cls._settings(vars(first.settings), given, first.duration), first.title)
+                messages[number] = message_of(error)
+        if not made:
+            raise ValueError(messages[0])
+        first = next(iter(made.values()))
+        systems = {number: one.system for number, one in made.items()}
+        return cls(
+            systems, first.duration, cls._settings(vars(first.settings), given, first.duration), first.title, messages
+        )
 
     @staticmethod
     def _settings(own: Mapping[str, Any], given: Mapping[str, Any], duration: float) -> dict[str, Any]:
@@ -241,7 +246,7 @@ class _Made:
         def ended(record: PlainRecord) -> _End:
             message = str(record.attrs.get("message", ""))
             if message:
-                return _End(FAILED, np.nan, np.nan, message)
+                return _failed(message)
             late = record.time > record.time[0] + start
             half = np.count_nonzero(late) // 2
             motions = [record.by_contact(name).reshape(late.size, -1)[late] for name in MOTIONS]
@@ -251,9 +256,8 @@ class _Made:
             word = str(regime_of(record, start=min(start, 0.999 * length))["regime"])
             return _End(word, max(map(_amplitude, motions)), change, "")
 
-        chosen = [number for number, one in enumerate(self.systems) if isinstance(one, System)]
         found: list[Any] = simulate_many(
-            [self.systems[number] for number in chosen],  # type: ignore[misc]
+            [*self.systems.values()],
             self.duration,
             reduce=ended,
             workers=workers,
@@ -264,29 +268,31 @@ class _Made:
             progress=progress,
             **self.settings,
         )
-        ends = [_End(FAILED, np.nan, np.nan, str(one)) for one in self.systems]
-        for number, one in zip(chosen, found, strict=True):
-            is_failed = isinstance(one, Exception)
-            ends[number] = _End(FAILED, np.nan, np.nan, message_of(one)) if is_failed else one
-        return ends
+        ends = {number: _failed(words) for number, words in self.messages.items()}
+        for number, one in zip(self.systems, found, strict=True):
+            ends[number] = _failed(message_of(one)) if isinstance(one, Exception) else one
+        return [ends[number] for number in range(len(ends))]
+
+
+def _failed(words: str) -> _End:
+    return _End(FAILED, np.nan, np.nan, words)
 
 
 def _amplitude(motions: Array) -> float:
     return 0.5 * float(np.ptp(motions, axis=0).max(initial=0.0)) if len(motions) else np.nan
 
 
-def _started(system: System, starts: Sequence[Mapping[str, Any]], body: Body | None) -> list[System | str]:
+def _started(system: System, starts: Sequence[Mapping[str, Any]], body: Body | None) -> dict[int, System]:
     """Return a system with each start of a body."""
     chosen: Any = system.contacts[0].tip.body if body is None else body
     if chosen not in system.bodies:
         raise ArgumentError("body", "be one of the system", body)
     blank = InitialState(chosen)
-    before = next((one for one in system.drives if isinstance(one, InitialState) and one.body == chosen), blank)
+    before: Any = next((one for one in system.drives if one.vectors and one.acted_on == chosen), blank)
     kept = [one for one in system.drives if one is not before]
     places = {key: _place(chosen, key) for key in starts[0]}
-    return [
-        System(system.contact, [*kept, _state(before, places, in_si(values))], system.connections) for values in starts
-    ]
+    states = (_state(before, places, in_si(values)) for values in starts)
+    return {number: System(system.contact, [*kept, one], system.connections) for number, one in enumerate(states)}
 
 
 def _place(body: Any, key: str) -> tuple[str, int]:

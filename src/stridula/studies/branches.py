@@ -17,6 +17,7 @@ from ..cycles.cycle_record import cycle_record
 from ..cycles.events import Event, birth, events_between
 from ..cycles.floquet import Multipliers, multipliers_of
 from ..cycles.limit_cycle import cycle_near
+from ..cycles.starts import Asked
 from ..drives import InitialEquilibrium
 from ..integration.bars import bar
 from ..integration.contact_solve import GaussSeidel
@@ -112,11 +113,11 @@ def follow_cycle(
         raise ArgumentError("high", f"be above low ({brief(low)})", high)
     within("value", value, low, high)
     count("points", points)
-    within("tolerance", tolerance, 1e-13, 0.1)
     settings = Settings(scheme=scheme, step=step, probes=probes, contact_solve=contact_solve)  # type: ignore[arg-type]
-    settings.check()
+    asked = Asked(start, settings, frequency, settle, tolerance)
+    asked.check()
     with _told(progress, key) as tell:
-        begun = _begun(system_of, settings, float(value), float(low), float(high), tolerance, start, frequency, settle)
+        begun = _begun(_Systems(system_of, settings), asked, float(value), float(low), float(high))
         origin = (
             (origin_of(source, overrides) if not callable(source) else {"function": name_of(source)})
             | {"stridula_version": __version__, "parameter": key}
@@ -173,20 +174,10 @@ class _Begun:
     high: float
 
 
-def _begun(
-    system_of: Callable[[float], System],
-    settings: Settings,
-    value: float,
-    low: float,
-    high: float,
-    tolerance: float,
-    start: xr.Dataset | InitialEquilibrium | None,
-    frequency: float | None,
-    settle: int | None,
-) -> _Begun:
-    found, is_driven = cycle_near(system_of(value), start, settings, frequency, settle, tolerance, lambda *_: None)
-    systems, cycle = _Systems(system_of, settings), found.best
-    branch = Branch(systems.assembly, high - low, tolerance, is_driven, cycle.step, cycle.size)
+def _begun(systems: _Systems, asked: Asked, value: float, low: float, high: float) -> _Begun:
+    found, is_driven = cycle_near(systems.system_of(value), asked, lambda *_: None)
+    cycle = found.best
+    branch = Branch(systems.assembly, high - low, asked.tolerance, is_driven, cycle.step, cycle.size)
     return _Begun(systems, branch, Point(value, cycle), low, high)
 
 

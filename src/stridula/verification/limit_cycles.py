@@ -67,7 +67,7 @@ class Way:
 
 def ways(scheme: Scheme, fine: float) -> list[Way]:
     """Return the ways of the two bars: at default settings (exact modal), with a fine step [s]."""
-    return [Way(scheme, None), Way(scheme, fine)] if isinstance(scheme, ExactModal) else [Way(scheme, fine)]
+    return [Way(scheme, None), Way(scheme, fine)] if scheme.name == ExactModal.name else [Way(scheme, fine)]
 
 
 def multipliers_of(cycle: xr.Dataset) -> Array:
