@@ -17,6 +17,7 @@ import against_c
 import brake
 import faces
 import gpu
+import limit_cycles
 import linear_theory
 import machine
 import many_contacts
@@ -47,6 +48,7 @@ SECTIONS = (
     meshes,
     faces,
     linear_theory,
+    limit_cycles,
     maps,
     surveys,
     scaling,

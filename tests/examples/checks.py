@@ -121,13 +121,20 @@ def check_cycles(names: Mapping[str, Any], printed: str) -> None:
     """Both cycles have their known periods, and the branch ends where sliding loses its stability."""
     assert float(names["cycle"].period) == pytest.approx(6.431383, rel=1e-4)
     assert float(names["other"].period) == pytest.approx(6.285167, rel=1e-4)
-    assert printed.splitlines()[-2:] == ["grazing at 1.836 m/s", "Hopf at 1.151 m/s"]
+    assert printed.splitlines()[-2:] == ["grazing at 1.837 m/s", "Hopf at 1.151 m/s"]
+
+
+def check_dynamics(names: Mapping[str, Any], printed: str) -> None:
+    """The unstable cycle is that of the known branch, and both motions are found between the limits."""
+    assert float(names["between"].displacement_amplitude[0]) == pytest.approx(1.2526, rel=1e-3)
+    assert {"stable sliding", "stick-slip"} == set(names["found"].attractor_regime.values)
 
 
 # Checks of at least one number, for pages that print any.
 CHECKS: dict[str, Callable[[Mapping[str, Any], str], None]] = {
     "README.md": check_readme,
     "cycles.rst": check_cycles,
+    "dynamics.rst": check_dynamics,
     "maps.rst": check_maps,
     "measures.rst": check_measures,
     "scenarios.rst": check_scenarios,
@@ -138,7 +145,8 @@ CHECKS: dict[str, Callable[[Mapping[str, Any], str], None]] = {
     "surveys.rst": check_surveys,
 }
 WRITTEN = {
-    "cycles.rst": {"branch.png", "multipliers.png"},
+    "cycles.rst": {"branch.png"},
+    "dynamics.rst": {"basin.png", "orbits.png"},
     "hearing.rst": {"ears.wav", "spectrogram.png", "spectrum.png", "squeal.gif"},
     "maps.rst": {"map.png", "root-loci.png"},
     "surveys.rst": {"survey.nc", "survey.png"},

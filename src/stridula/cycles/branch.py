@@ -216,7 +216,7 @@ class Branch:
             raise NotFound(f"the number of modes changes at {value:.6g}")
         if self.is_driven:
             period = self._multiple(near) * float(drive_period(flat) or 0.0)
-        moved = replace(of_period, arrays=flat, counter=of_period.counter)
+        moved = replace(of_period, arrays=flat, kept={})
         vectors = StateVectors(flat, near.vectors.period)
         vectors.of_states = near.vectors.of_states
         return Return.of(moved, vectors, Orbit(vector, period, near.status_after))
@@ -238,7 +238,7 @@ class Branch:
             return point
         steps = ceil(cycle.orbit.period / self.step)
         turns = cycle.of_period.first_step // cycle.of_period.steps
-        of_period = replace(cycle.of_period, steps=steps, first_step=turns * steps, counter=cycle.of_period.counter)
+        of_period = replace(cycle.of_period, steps=steps, first_step=turns * steps, kept={})
         found = self.at(point.value, Return.of(of_period, cycle.vectors, cycle.orbit))
         return found._replace(is_round_corner=point.is_round_corner)
 

@@ -15,6 +15,9 @@ from .returning import Orbit, Return
 PERIODS, PAST = 60, 5
 # Difference of a motion from itself a period later, relative to its size, above which its mean is nearer to a cycle.
 FAR = 0.05
+# Growth of a motion in a period, relative to its size, above which it is marched on; periods between two looks at it,
+# and most periods marched.
+GROWING, BETWEEN, LONGEST = 0.005, 10, 200
 
 
 def repeating(of_period: PeriodMap, vectors: StateVectors, orbit: Orbit, is_driven: bool) -> Orbit:
@@ -41,6 +44,23 @@ def repeating(of_period: PeriodMap, vectors: StateVectors, orbit: Orbit, is_driv
     state = of_period.after(state, orbit.period, past).state
     mean = Return.of(of_period, vectors, Orbit(vectors.vector(state, step), orbit.period, vectors.status(state)))
     return mean.orbit if mean.residual < alone.residual else alone.orbit
+
+
+def grown(of_period: PeriodMap, vectors: StateVectors, orbit: Orbit) -> Orbit:
+    """Return a motion once it no longer grows: from a small one, Newton's method would lead to rest.
+
+    Raises
+    ------
+    MarchEnded
+        If a march ends within a period.
+    """
+    now = Return.of(of_period, vectors, orbit)
+    for number in range(LONGEST):
+        after = Return.of(of_period, vectors, Orbit(now.end, orbit.period, now.status_after))
+        if number % BETWEEN == 0 and after.size <= (1.0 + GROWING) * now.size:
+            break
+        now = after
+    return now.orbit
 
 
 def _periods(of_period: PeriodMap, vectors: StateVectors, orbit: Orbit) -> Iterator[Passed]:

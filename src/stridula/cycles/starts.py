@@ -31,7 +31,7 @@ from ..lowering.signals import later
 from ..records.state import State
 from ..system import System
 from .drive_periods import drive_period, settled_at
-from .means import repeating
+from .means import grown, repeating
 from .returning import Orbit
 
 # Periods in which a motion may come back; how much nearer it must come after more than one, unless it is as near as
@@ -173,6 +173,7 @@ def beginning_of(system: System, asked: Asked) -> Beginning:
         orbit = _later(of_period, vectors, orbit, 1 if driven else PAST / steps)
     orbit = _later(of_period, vectors, orbit, settle or 0)
     if isinstance(start, xr.Dataset) and "period" not in start:
+        orbit = grown(of_period, vectors, orbit) if driven is None else orbit
         orbit = repeating(of_period, vectors, orbit, driven is not None)
     return Beginning(of_period, vectors, orbit, driven is not None)
 

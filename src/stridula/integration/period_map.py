@@ -81,6 +81,8 @@ class PeriodMap:
         Number of the first step: drives have settled by then, and it begins a period of those that never settle.
     counter : Counter
         Periods marched so far, shared with maps of other systems.
+    kept : dict
+        The last march, by its step [s].
     """
 
     arrays: Assembly
@@ -89,6 +91,7 @@ class PeriodMap:
     steps: int
     first_step: int = 0
     counter: Counter = field(default_factory=Counter)
+    kept: dict[float, tuple[March, Impositions]] = field(default_factory=dict)
 
     def after(self, state: State, period: float, steps: int | None = None) -> Passed:
         """Return the motion a period [s] later, or after some steps of it.
@@ -99,9 +102,7 @@ class PeriodMap:
             If it is not finite, or if the forces of its contacts are not found.
         """
         step, steps = period / self.steps, self.steps if steps is None else steps
-        blocks = blocks_of(self.arrays, self.scheme, step)
-        march = March([blocks], [_without_energies(state)], step, 1, self.solve)
-        imposed = Impositions(self.arrays, blocks, step)
+        march, imposed = self._march(_without_energies(state), step)
         self.counter.marched += steps / self.steps
         ends = sorted({*(np.arange(1, INSTANTS + 1) * steps // INSTANTS).tolist(), steps - 1} - {0})
         states, sizes, first = [march.states[0]], [], 0
@@ -117,6 +118,19 @@ class PeriodMap:
         back = -travel(self.arrays, self.first_step * step, (self.first_step + steps) * step, step)
         before, last = (carried_on(self.arrays, one, back) for one in states[-2:])
         return Passed(last, before, np.array([one.modal for one in states[1:]]), np.max(sizes, axis=0))
+
+    def _march(self, state: State, step: float) -> tuple[March, Impositions]:
+        """Return the march from a state, and the motions imposed; those of the last step are used again."""
+        if step in self.kept:
+            march, imposed = self.kept[step]
+            march.put([state])
+            return march, imposed
+        blocks = blocks_of(self.arrays, self.scheme, step)
+        march = March([blocks], [state], step, 1, self.solve)
+        imposed = Impositions(self.arrays, blocks, step)
+        self.kept.clear()
+        self.kept[step] = march, imposed
+        return march, imposed
 
 
 def travel(arrays: Assembly, begin: float, end: float, step: float) -> Array:
