@@ -20,6 +20,7 @@ from ..records.files import save as save_file
 from ..scenarios.load import Scenario, load_scenario
 from ..scenarios.quantities import parts, quantity
 from ..studies.branches import follow_cycle
+from ..studies.points import Range
 from .consoles import wide_console
 from .exits import FAILED, Stopped
 from .outputs import check_outputs, check_record
@@ -104,7 +105,7 @@ def print_branch(
     """Follow a limit cycle over a parameter, print its events, and optionally draw or write the branch."""
     check_outputs(out, plot)
     check_record(out)
-    ((key, span),) = ranges_of([over.words]).items()
+    key, span = _range(over.words)
     low, high = span.number(0.0), span.number(1.0)
     first = low if over.value is None else _number(over.value, span.unit)
     scenario = load_scenario(name, overrides | {key: f"{first!r} {span.unit}" if span.unit else first})
@@ -133,6 +134,17 @@ def print_branch(
         from ..plot import bifurcation, save
 
         save(bifurcation(branch), plot)
+
+
+def _range(words: str) -> tuple[str, Range]:
+    """Return the key and the range of the option ``--over``."""
+    try:
+        ((key, span),) = ranges_of([words]).items()
+    except ArgumentError as error:
+        raise error.renamed("--over") from None
+    if span.logarithmic:
+        raise ArgumentError("--over", "be KEY=LOW:HIGH", words)
+    return key, span
 
 
 def _number(value: str, unit: str) -> float:
