@@ -172,6 +172,7 @@ HOMES = {
     "records.export": "Export",
     "records.plain": "Plain records",
     "records.compare": "Comparison of records",
+    "records.repeated": "Limit cycles over time",
     "integration": "Integration in time",
     "analysis": "Regimes",
     "analysis.record_card": "Cards of records",

@@ -74,6 +74,7 @@ _HOME = {
     "records.export": ("export",),
     "records.plain": ("PlainRecord",),
     "records.compare": ("compare",),
+    "records.repeated": ("repeat_cycle",),
     "scenarios": ("Scenario", "ScenarioError", "list_scenarios", "load_scenario", "scenario_schema", "scenario_text"),
     "integration": (
         "CentralDifference",

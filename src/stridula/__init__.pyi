@@ -117,6 +117,7 @@ from .records.export import export as export
 from .records.files import load as load
 from .records.files import save as save
 from .records.plain import PlainRecord as PlainRecord
+from .records.repeated import repeat_cycle as repeat_cycle
 from .scenarios import Scenario as Scenario
 from .scenarios import ScenarioError as ScenarioError
 from .scenarios import list_scenarios as list_scenarios

@@ -146,6 +146,28 @@ def test_a_cycle_is_a_record_that_files_and_runs_take(tmp_path):
     assert float(other["period"]) != period
 
 
+def test_a_repeated_cycle_is_a_run_of_many_periods():
+    """A run from the cycle passes the same states; sums since the start go on."""
+    system = Weakening(1.0).system()
+    cycle = st.limit_cycle(system, step=0.05)
+    again = st.repeat_cycle(cycle, 2.5 * float(cycle["period"]))
+    assert again.sizes["time"] == 3 * cycle.sizes["time"]
+    step = cycle.attrs["step"]
+    probes = [st.Displacement(system.contacts[0].tip, axis) for axis in "xy"]
+    run = st.simulate(system, again.sizes["time"] * step, start=cycle, step=step, sample_rate=1.0 / step, probes=probes)
+    for name in ("displacement", "normal_force", "tangential_force", "slip_velocity"):
+        np.testing.assert_allclose(again[name].values, run[name].values, atol=1e-8)
+    for name in ("drive_work", "friction_loss", "damping_loss"):
+        passed = float(cycle[name][-1])
+        np.testing.assert_allclose(again[name].values + passed, run[name].values, rtol=1e-7)
+    np.testing.assert_allclose(np.diff(again["time"].values), step, rtol=1e-9)
+    assert str(st.regime(st.repeat_cycle(cycle, 200.0))["regime"].item()) == "stick-slip"
+    with pytest.raises(ValueError, match="duration must be"):
+        st.repeat_cycle(cycle, 0.0)
+    with pytest.raises(ValueError, match="cycle must be the result of limit_cycle"):
+        st.repeat_cycle(run, 1.0)
+
+
 def test_energy_of_a_period_balances():
     cycle = st.limit_cycle(LiftingMass().system())
     energy = cycle["period_energy"]

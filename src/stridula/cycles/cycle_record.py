@@ -14,7 +14,7 @@ from ..integration.preparation import Preparation
 from ..integration.run import Midway
 from ..integration.settings import Settings
 from ..integration.together import march_together
-from ..records import Displacement, Probe
+from ..records import Displacement, ModalMotion, Probe
 from ..records.probes import usual_probes
 from ..records.variables import PROBES, described
 from ..system import System
@@ -66,7 +66,7 @@ def cycle_record(
     coordinates: dict[str, Any] = {"part": ["real", "imaginary"]}
     most = min(HARMONICS, (steps - 1) // 2)
     for name, variable in PROBES.items():
-        if name in record and record[name].dims[0] == "time":
+        if name in record and name != ModalMotion.quantity:
             values, probes = record[name].values, record[name].dims[1]
             own[f"{name}_amplitude"] = (
                 probes,

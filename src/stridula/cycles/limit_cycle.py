@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from math import log10
 
 import numpy as np
@@ -16,9 +17,9 @@ from ..integration.contact_solve import GaussSeidel
 from ..integration.period_map import MarchEnded
 from ..integration.settings import Settings
 from ..lowering.schemes import Scheme
-from ..records import Probe
+from ..records import ModalMotion, Probe
 from ..system import System
-from .cycle_record import cycle_record
+from .cycle_record import cycle_record, probes_of
 from .departures import departure
 from .floquet import multipliers_of
 from .newton import Found, Tell, closed_orbit
@@ -43,6 +44,7 @@ def limit_cycle(
     step: float | None = None,
     probes: Sequence[Probe] | None = None,
     contact_solve: GaussSeidel | None = None,
+    motion: bool = False,
     title: str = "",
     progress: bool = False,
 ) -> xr.Dataset:
@@ -78,6 +80,8 @@ def limit_cycle(
         contact.
     contact_solve : GaussSeidel, optional
         Settings of the simultaneous solution of several contacts.
+    motion : bool, optional
+        Whether to record the motion of all bodies, from which `radiate` computes their sound; see `repeat_cycle`.
     title : str, optional
         Title of the record.
     progress : bool, optional
@@ -119,6 +123,9 @@ def limit_cycle(
     settings = Settings(scheme=scheme, step=step, probes=probes, contact_solve=contact_solve)  # type: ignore[arg-type]
     asked = Asked(start, settings, frequency, settle, tolerance)
     asked.check()
+    instance("motion", motion, bool)
+    if motion:
+        settings = replace(settings, probes=(*probes_of(system, settings), *map(ModalMotion, system.bodies)))
     with _told(progress, title or "limit cycle", tolerance) as tell:
         found, is_driven = cycle_near(system, asked, tell)
         multipliers = multipliers_of(found.best, is_driven)
