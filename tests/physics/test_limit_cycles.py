@@ -14,6 +14,8 @@ from stridula.verification.limit_cycles import multipliers_of, nearest
 from stridula.verification.systems.cycles import DenHartog, LiftingMass, NotPeriodic, Stopped, Weakening
 from stridula.verification.systems.mode_coupling import AT_CONTACT, GROUNDED
 
+from .test_circular_paths import carried_past, on_a_circle_at, riders
+
 BAR = 1e-3
 
 
@@ -195,3 +197,19 @@ def test_a_run_leaves_an_unstable_cycle_as_fast_as_its_multiplier():
     assert between.sum() > 50
     rate = np.polyfit(np.flatnonzero(between), np.log(away[between]), 1)[0]
     assert np.exp(rate) == pytest.approx(float(multipliers_of(cycle)[0].real), rel=1e-3)
+
+
+def test_a_cycle_goes_round_with_a_contact_that_is_carried_round():
+    """A rider carried round a disc, and a rider at rest past which the waves of the same disc are carried."""
+    law = st.ExponentialWeakening(static=0.6, kinetic=0.2, velocity=0.2)
+    found = []
+    for track in (on_a_circle_at(0.3), carried_past(0.3)):
+        system = riders(track, law)
+        run = st.simulate(system, 0.4, step=4e-6, sample_rate=125e3, probes=[])
+        found.append(st.limit_cycle(system, run))
+    round_, past = found
+    assert float(round_["period"]) == pytest.approx(float(past["period"]), rel=2e-5)
+    assert bool(round_["stable"])
+    assert bool(past["stable"])
+    known = multipliers_of(past)[:6]
+    np.testing.assert_allclose(nearest(known, multipliers_of(round_)), known, atol=1e-3)

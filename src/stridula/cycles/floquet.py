@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,8 @@ MOST_PRODUCTS, LARGEST_ERROR = 200, 1e-3
 FOUND = 0.02
 # Norm of what a product adds, relative to the product, below which all multipliers have been found.
 COMPLETE = 1e-7
+# Accuracy from which multipliers are not computed again.
+ACCURATE = 5e-4
 # Imaginary part, relative to its size, below which a multiplier is real.
 REAL = 1e-5
 # Least distance from the unit circle that counts.
@@ -105,10 +108,32 @@ class Multipliers:
 
 
 def multipliers_of(cycle: Return, is_driven: bool) -> Multipliers:
-    """Return the multipliers of a periodic motion by Arnoldi's method: all of them for few modes, else the largest."""
+    """Return the multipliers of a periodic motion: all of them for few modes, else the largest.
+
+    Where contacts stop or reverse, the place of that event within its step changes with the state, which the derivative
+    at a state has to first order in the step. If the multiplier along the cycle is far from 1, they are those of mean
+    derivatives over two steps, unless that is farther from it. If drives prescribe the phase, no multiplier tells; mean
+    derivatives are taken.
+    """
+    if is_driven:
+        return _by_arnoldi(cycle, cycle.mean_product if cycle.passed.stops else _near(cycle), None)
+    found = _by_arnoldi(cycle, _near(cycle), 1.0)
+    if cycle.passed.stops and not found.accuracy < ACCURATE:
+        mean = _by_arnoldi(cycle, cycle.mean_product, 1.0)
+        return mean if mean.accuracy < found.accuracy else found
+    return found
+
+
+def _near(cycle: Return) -> Callable[[Array], Array]:
+    """Return the product of the derivative at a cycle."""
+    return lambda direction: cycle.product(direction, OF_RESIDUAL)
+
+
+def _by_arnoldi(cycle: Return, product: Callable[[Array], Array], trivial: float | None) -> Multipliers:
+    """Return the multipliers by Arnoldi's method; `trivial` is the value of the one along the cycle."""
     counted, norm = cycle.vectors.counted, cycle.vectors.norm
     # The first product is a motion that the march has reached.
-    direction = cycle.product(cycle.vectors.random(SEED, cycle.orbit.vector), OF_RESIDUAL)
+    direction = product(cycle.vectors.random(SEED, cycle.orbit.vector))
     size = norm(direction)
     if not size > 0.0:
         return Multipliers(np.zeros(1, dtype=complex), None, cycle.orbit.period)
@@ -116,7 +141,7 @@ def multipliers_of(cycle: Return, is_driven: bool) -> Multipliers:
     projected = np.zeros((MOST_PRODUCTS + 1, MOST_PRODUCTS))
     used, left = 0, np.inf
     for k in range(MOST_PRODUCTS):
-        direction = cycle.product(basis[k], OF_RESIDUAL)
+        direction = product(basis[k])
         whole = norm(direction)
         for _ in range(2):
             for i, one in enumerate(basis):
@@ -130,8 +155,7 @@ def multipliers_of(cycle: Return, is_driven: bool) -> Multipliers:
         basis.append(direction / left)
     values, vectors = np.linalg.eig(projected[:used, :used])
     errors = left * np.abs(vectors[-1])
-    kept = errors <= np.maximum(LARGEST_ERROR, COMPLETE)
-    values = values[kept]
+    values = values[errors <= LARGEST_ERROR]
     values = values[np.argsort(-np.abs(values), kind="stable")]
-    trivial = None if is_driven or not values.size else int(np.argmin(np.abs(values - 1.0)))
-    return Multipliers(values, trivial, cycle.orbit.period)
+    along = None if trivial is None or not values.size else int(np.argmin(np.abs(values - trivial)))
+    return Multipliers(values, along, cycle.orbit.period)

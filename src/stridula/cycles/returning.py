@@ -120,6 +120,19 @@ class Return:
         passed = self.of_period.after(state, self.orbit.period)
         return (self.vectors.vector(passed.state, self.step) - self.end) / amount
 
+    def mean_product(self, direction: Array) -> Array:
+        """Return the same as a difference of two states as far apart as the motion goes in two steps.
+
+        It averages over the places of events within their steps.
+        """
+        amount = 2.0 * np.pi / self.of_period.steps * self.size / self.vectors.norm(direction)
+        ends = []
+        for sign in (1.0, -1.0):
+            vector = self.orbit.vector + sign * amount * direction
+            passed = self.of_period.after(self.vectors.state(vector, self.step, self.orbit.status), self.orbit.period)
+            ends.append(self.vectors.vector(passed.state, self.step))
+        return np.asarray((ends[0] - ends[1]) / (2.0 * amount))
+
     def by_period(self) -> Array:
         """Return the derivative of the state after the period with respect to the period, for the same vector."""
         longer = self.orbit.period * (1.0 + PERTURBED)

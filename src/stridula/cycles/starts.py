@@ -201,10 +201,11 @@ def _settled(drive: Any) -> Any:
 
 
 def _expected(start: xr.Dataset, frequency: float | None, driven: float | None, system: System) -> float:
-    """Return the expected period of a record [s]."""
+    """Return the expected period of a record [s]; that of a cycle may be a multiple of that of the drives."""
+    if "period" in start:
+        known = float(start["period"])
+        return known if driven is None else max(1, round(known / driven)) * driven
     if driven is None and frequency is None:
-        if "period" in start:
-            return float(start["period"])
         found = float(regime(start)["frequency"])
         if np.isfinite(found):
             return 1.0 / found

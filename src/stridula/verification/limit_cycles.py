@@ -272,11 +272,9 @@ def den_hartog_cycle() -> Outcome:
             yield way.row("amplitude", rubbed.amplitude, highest(places), rubbed.amplitude, "m")
             product = float(np.prod(nearest(rubbed.multipliers, multipliers_of(cycle))).real)
             yield way.row("product of both multipliers", rubbed.product, product, rubbed.product)
+            yield from way.multipliers(rubbed.multipliers, cycle)
             if way.step is None:
-                # Their phase changes with the place of a reversal within its step, of first order.
                 curves.append(drawn(cycle, places, scheme.name))
-            else:
-                yield from way.multipliers(rubbed.multipliers, cycle)
         counts = (100, 200, 400, 800)
         yield order_row(
             "amplitude",
