@@ -43,7 +43,7 @@ class Passed(NamedTuple):
     friction_states : ndarray, shape (contacts, 2)
         Largest size of the internal states of the friction laws.
     stops : bool
-        Whether a contact sticks, or slides in both senses.
+        Whether a contact with friction sticks, or slides in both senses.
     """
 
     state: State
@@ -108,8 +108,7 @@ class PeriodMap:
         march, imposed = self._march(_without_energies(state), step)
         self.counter.marched += steps / self.steps
         ends = sorted({*(np.arange(1, INSTANTS + 1) * steps // INSTANTS).tolist(), steps - 1} - {0})
-        states, sizes, slips, first = [march.states[0]], [], [], 0
-        sticks = False
+        states, sizes, rubbed, first = [march.states[0]], [], [], 0
         for end in ends:
             count = end - first
             chunk = march.advance([imposed.on(self.first_step + first, count)], count)[0]
@@ -117,17 +116,16 @@ class PeriodMap:
                 word = ENDED[chunk.ended]
                 raise MarchEnded(WHAT.get(word, word))
             sizes.append(np.abs(chunk.contacts[:, :, LAW_STATES]).max(axis=0))
-            slid = chunk.contacts[:, :, at.SLIP_VELOCITY]
-            slips += [slid.min(axis=0), slid.max(axis=0)]
-            sticks |= bool((chunk.contacts[:, :, at.STICKING] > 0.0).any())
+            slips, forces = chunk.contacts[:, :, at.SLIP_VELOCITY], np.abs(chunk.contacts[:, :, at.TANGENTIAL_FORCE])
+            sticking = chunk.contacts[:, :, at.STICKING]
+            rubbed.append([-slips.min(axis=0), slips.max(axis=0), sticking.max(axis=0), forces.max(axis=0)])
             states.append(march.states[0])
             first = end
         back = -travel(self.arrays, self.first_step * step, (self.first_step + steps) * step, step)
         before, last = (carried_on(self.arrays, one, back) for one in states[-2:])
-        reverses = bool(((np.min(slips, axis=0) < 0.0) & (np.max(slips, axis=0) > 0.0)).any())
-        return Passed(
-            last, before, np.array([one.modal for one in states[1:]]), np.max(sizes, axis=0), sticks or reverses
-        )
+        backwards, forwards, sticking, forces = np.max(rubbed, axis=0) > 0.0
+        stops = bool((forces & (sticking | (backwards & forwards))).any())
+        return Passed(last, before, np.array([one.modal for one in states[1:]]), np.max(sizes, axis=0), stops)
 
     def _march(self, state: State, step: float) -> tuple[March, Impositions]:
         """Return the march from a state, and the motions imposed; those of the last step are used again."""
