@@ -83,8 +83,20 @@ def follow_cycle(
         Other values to set in the scenario by key.
     points : int, optional
         Most points in each direction.
-    frequency, settle, tolerance, scheme, step, probes, contact_solve
-        As for `limit_cycle`.
+    frequency : float, optional
+        Expected frequency of the first cycle [Hz], as for `limit_cycle`.
+    settle : int, optional
+        Periods that are marched before the search for it.
+    tolerance : float, optional
+        Largest residual of each cycle [1].
+    scheme : CentralDifference or ExactModal, optional
+        Time scheme; the exact modal one if left out.
+    step : float, optional
+        Longest time step [s], a whole division of the period; by default that of the record, or of a run.
+    probes : sequence of probes, optional
+        Quantities whose amplitudes are kept; by default those of `limit_cycle`.
+    contact_solve : GaussSeidel, optional
+        Settings of the simultaneous solution of several contacts.
     out : str or Path, optional
         NetCDF file that is written after every point. A branch that has been begun in it is continued.
     progress : bool, optional
