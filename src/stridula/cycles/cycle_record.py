@@ -110,6 +110,7 @@ def _period(system: System, cycle: Return, settings: Settings, title: str) -> xr
     asked = replace(settings, step=step, sample_rate=1.0 / step, probes=probes_of(system, settings))
     preparation = Preparation(orbit.period, asked)
     state = cycle.vectors.state(orbit.vector, step, orbit.status)
-    run = preparation.run(preparation.arrays(system), Midway(state, of_period.first_step), title)
+    midway = Midway(state, of_period.first_step)
+    run = preparation.run(preparation.arrays(system), title=title, midway=midway)
     march_together([run], March([run.blocks], [run.state], step, 1, settings.solve))
     return run.record()

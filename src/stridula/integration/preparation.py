@@ -77,7 +77,7 @@ class Preparation:
             probes += tuple(ModalMotion(body) for body in system.bodies)
         return Arrays(system, probes, assemble(system, probes))
 
-    def timing(self, arrays: Arrays, start: xr.Dataset | Midway | None = None) -> Timing:
+    def timing(self, arrays: Arrays, start: xr.Dataset | None = None) -> Timing:
         """Return the step and the sampling of a system, with the step of a record to continue if none is given."""
         step, rate = self.settings.step, self.settings.sample_rate
         if step is None and isinstance(start, xr.Dataset) and "step" in start.attrs:
@@ -96,7 +96,9 @@ class Preparation:
         return replace(timing, motion_every=every, samples=every * max(1, round(timing.samples / every)))
 
     @of_ordinary_size("system")
-    def run(self, arrays: Arrays, start: xr.Dataset | Midway | None = None, title: str = "") -> Run:
+    def run(
+        self, arrays: Arrays, start: xr.Dataset | None = None, title: str = "", midway: Midway | None = None
+    ) -> Run:
         """Return the run of a system, ready to march."""
         timing = self.timing(arrays, start)
         every = self._every(arrays.system, timing)
@@ -116,6 +118,7 @@ class Preparation:
             start=start,
             title=title,
             surfaces=surfaces,
+            midway=midway,
         )
 
     def _check_size(self, arrays: Arrays, timing: Timing, every: int) -> None:

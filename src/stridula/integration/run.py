@@ -94,32 +94,33 @@ class Run:
         settings: Settings,
         timing: Timing,
         *,
-        start: xr.Dataset | Midway | None,
+        start: xr.Dataset | None,
         title: str,
         surfaces: SurfaceRecord | None = None,
+        midway: Midway | None = None,
     ) -> None:
         scheme = settings.scheme
         self.system, self.arrays, self.probes = system, arrays, probes
         self.settings, self.timing, self.title = settings, timing, title
         self.blocks = blocks_of(arrays, scheme, timing.step)
         self.described, self.offset = arrays.motion, np.zeros((len(arrays.contacts), at.MOTIONS))
-        if start is None:
+        before = None
+        if midway is not None:
+            self.state, self.first_step = deepcopy(midway.state), midway.first_step
+            stored = self.blocks.modes.stored_energy(self.state.modal)
+            self.initial_energy = float(stored + stored_in_contacts(arrays, self.state.carried))
+            self.state.energies[at.STORED] = self.initial_energy
+        elif start is None:
             placed = in_equilibrium(system, arrays)
             self.state = state_at_start(placed, scheme, timing.step, self.blocks, settings.solve)
             self.first_step, self.initial_energy = 0, float(self.state.energies[at.STORED])
-            before = None
-        elif isinstance(start, xr.Dataset):
+        else:
             self.state = state_of(start, system, arrays, scheme, timing, probes)
             self.arrays, self.offset = moved_on(start, system, arrays, self.blocks.modes, self.state, timing.step)
             self.first_step, self.initial_energy = int(start.attrs["last_step"]), float(start.attrs["initial_energy"])
             before = np.array(start["state_raw"].values, dtype=float)
-        else:
-            self.state, self.first_step, before = deepcopy(start.state), start.first_step, None
-            stored = self.blocks.modes.stored_energy(self.state.modal)
-            self.initial_energy = float(stored + stored_in_contacts(arrays, self.state.carried))
-            self.state.energies[at.STORED] = self.initial_energy
         # Rounding errors of large energies remain when these are gone.
-        met = float(start.attrs.get("largest_energy", 0.0)) if isinstance(start, xr.Dataset) else 0.0
+        met = 0.0 if start is None else float(start.attrs.get("largest_energy", 0.0))
         self.belief = Belief(system, arrays, self.blocks, self.state.energies, self.initial_energy, met)
         self.impositions = Impositions(self.arrays, self.blocks, timing.step)
         self.energy_record = np.empty((at.ENERGIES, timing.samples))
