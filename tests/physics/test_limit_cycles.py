@@ -213,3 +213,26 @@ def test_a_cycle_goes_round_with_a_contact_that_is_carried_round():
     assert bool(past["stable"])
     known = multipliers_of(past)[:6]
     np.testing.assert_allclose(nearest(known, multipliers_of(round_)), known, atol=1e-3)
+
+
+def test_a_wheel_leaves_its_cycle_as_its_multipliers_say():
+    """A run that begins on the unstable cycle, after a slight push, spirals away with the pair outside the circle."""
+    system = st.load_scenario("wheel").system
+    cycle = st.limit_cycle(system, st.simulate(system, 3.0))
+    pair = multipliers_of(cycle)[0]
+    assert abs(pair) > 1.001
+    assert not bool(cycle["stable"])
+    step, period, steps = cycle.attrs["step"], float(cycle["period"]), cycle.sizes["time"]
+    tip = system.contacts[0].tip
+    arguments = {"step": step, "sample_rate": 1.0 / step, "probes": [st.Displacement(tip, axis) for axis in "xyz"]}
+    contact = replace(system.contact, friction=replace(system.contacts[0].friction, static=0.4004))
+    pushed = st.simulate(st.System(contact, system.drives, system.connections), 5.0 * period, start=cycle, **arguments)
+    run = st.simulate(system, 900.0 * period, start=pushed, **arguments)
+    apart = run["displacement"].values[steps - 1 :: steps, 2] - cycle["displacement"].values[-1, 2]
+    apart = apart[300:]
+    # The pair obeys x[n+2] = 2 Re(pair) x[n+1] - |pair|^2 x[n], beside a drift along the cycle.
+    numbers = np.arange(len(apart) - 2)
+    known = np.stack([apart[1:-1], apart[:-2], np.ones(len(numbers)), numbers], axis=1)
+    first, second, *_ = np.linalg.lstsq(known / np.abs(known).max(axis=0), apart[2:])[0] / np.abs(known).max(axis=0)
+    assert np.sqrt(-second) == pytest.approx(abs(pair), abs=2e-4)
+    assert np.arccos(0.5 * first / np.sqrt(-second)) == pytest.approx(abs(np.angle(pair)), rel=3e-3)
