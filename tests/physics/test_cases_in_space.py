@@ -145,6 +145,7 @@ def test_every_case_is_turned_or_named():
         "sounding_spheres",
         "halved_steps",
         "shaken",
+        "limit_cycles",
     }
 
 

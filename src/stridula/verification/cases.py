@@ -36,7 +36,6 @@ CASES: tuple[Case, ...] = (
     *falling.CASES,
     *instabilities.CASES,
     *stability.CASES,
-    *limit_cycles.CASES,
     *impacts.CASES,
     *indentation.CASES,
     *linings.CASES,
@@ -57,4 +56,5 @@ CASES: tuple[Case, ...] = (
     *sounding_spheres.CASES,
     *shaken.CASES,
     *sensations.CASES,
+    *limit_cycles.CASES,
 )
