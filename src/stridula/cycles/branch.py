@@ -193,7 +193,7 @@ class Branch:
                 if now.residual < self.tolerance:
                     return Point(value, now), number
                 by_value = self._by_value(now, value)
-                others, conditions = [by_value], [Condition(along.state, [*along.factors])]
+                others, conditions = [by_value], [along]
                 if not self.is_driven:
                     others = [now.by_period(), by_value]
                     conditions = [Condition(now.flow, [0.0, 0.0]), Condition(along.state, [0.0, *along.factors])]

@@ -14,8 +14,8 @@ from ..integration.preparation import Preparation
 from ..integration.run import Midway
 from ..integration.settings import Settings
 from ..integration.together import march_together
-from ..records import Displacement, ModalMotion, Probe
-from ..records.probes import usual_probes
+from ..records import ModalMotion, Probe
+from ..records.probes import displacements_of_tip, usual_probes
 from ..records.variables import PROBES, described
 from ..system import System
 from .floquet import Multipliers
@@ -100,8 +100,7 @@ def probes_of(system: System, settings: Settings) -> tuple[Probe, ...]:
     """Return the probes asked for; else the usual ones, with the displacements of the first tip."""
     if settings.probes is not None:
         return tuple(settings.probes)
-    tip = system.contacts[0].tip
-    return (*usual_probes(system), *(Displacement(tip, axis) for axis in "xyz"[: 3 if tip.body.is_spatial else 2]))
+    return (*usual_probes(system), *displacements_of_tip(system))
 
 
 def _period(system: System, cycle: Return, settings: Settings, title: str) -> xr.Dataset:

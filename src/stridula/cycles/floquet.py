@@ -138,6 +138,7 @@ def _by_arnoldi(cycle: Return, product: Callable[[Array], Array], trivial: float
     if not size > 0.0:
         return Multipliers(np.zeros(1, dtype=complex), None, cycle.orbit.period)
     basis = [direction / size]
+    numbers = [counted(basis[0])]
     projected = np.zeros((MOST_PRODUCTS + 1, MOST_PRODUCTS))
     used, left = 0, np.inf
     for k in range(MOST_PRODUCTS):
@@ -145,7 +146,7 @@ def _by_arnoldi(cycle: Return, product: Callable[[Array], Array], trivial: float
         whole = norm(direction)
         for _ in range(2):
             for i, one in enumerate(basis):
-                part = counted(one) @ counted(direction)
+                part = numbers[i] @ counted(direction)
                 projected[i, k] += part
                 direction = direction - part * one
         left, used = norm(direction), k + 1
@@ -153,6 +154,7 @@ def _by_arnoldi(cycle: Return, product: Callable[[Array], Array], trivial: float
         if left <= COMPLETE * max(whole, 1.0):
             break
         basis.append(direction / left)
+        numbers.append(counted(basis[-1]))
     values, vectors = np.linalg.eig(projected[:used, :used])
     errors = left * np.abs(vectors[-1])
     values = values[errors <= LARGEST_ERROR]

@@ -106,15 +106,15 @@ class Linearised:
         states = np.array([counted(one.state) for one in conditions]).reshape(len(conditions), missing.size)
         below = np.array([one.factors for one in conditions]).reshape(len(conditions), len(others))
         right = np.append(-missing, np.zeros(len(conditions)))
-        directions, products = list[Array](), list[Array]()
+        directions, products, changes, along = (list[Array]() for _ in range(4))
         matrix = np.vstack([columns, below])
         enough = float(np.clip(now.residual, LINEAR, LINEAR_FAR)) * np.linalg.norm(missing)
         for direction, product in krylov(now, [now.missing, *seeds]):
             directions.append(direction)
             products.append(product)
-            changes = np.array([counted(b - a) for a, b in zip(directions, products, strict=True)]).T
-            along = states @ np.array([counted(one) for one in directions]).T
-            matrix = np.block([[changes, columns], [along, below]])
+            changes.append(counted(product - direction))
+            along.append(states @ counted(direction))
+            matrix = np.block([[np.array(changes).T, columns], [np.array(along).T, below]])
             scale = _scale(matrix)
             solution = np.linalg.lstsq(matrix / scale, right, rcond=SINGULAR)[0] / scale
             if np.linalg.norm(matrix @ solution - right) < enough:
@@ -168,16 +168,17 @@ def _scale(matrix: Array) -> Array:
 def krylov(now: Return, seeds: Sequence[Array]) -> Iterator[tuple[Array, Array]]:
     """Yield directions, orthonormal in the norm of energy, with the products by the derivative that span them."""
     counted, norm = now.vectors.counted, now.vectors.norm
-    directions: list[Array] = []
+    found: list[tuple[Array, Array]] = []
     waiting = list(seeds)
-    while waiting and len(directions) < MOST_PRODUCTS:
+    while waiting and len(found) < MOST_PRODUCTS:
         direction = waiting.pop(0)
         before = norm(direction)
         for _ in range(2):
-            for one in directions:
-                direction = direction - one * (counted(one) @ counted(direction))
+            for one, numbers in found:
+                direction = direction - one * (numbers @ counted(direction))
         size = norm(direction)
         if size > ROUND_OFF * before:
-            directions.append(direction / size)
-            waiting.append(now.product(directions[-1]))
-            yield directions[-1], waiting[-1]
+            direction = direction / size
+            found.append((direction, counted(direction)))
+            waiting.append(now.product(direction))
+            yield direction, waiting[-1]

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from ..arrays import Array
 from ..checks import ArgumentError, instance, listed
 from .colours import LINE, LINES
+from .loci import with_unit
 
 STABLE, UNSTABLE, RUNS = LINE, LINES[1], LINES[2]
 # Marks of the events on a branch.
@@ -62,7 +63,7 @@ def bifurcation(branch: xr.Dataset, amplitude: str | None = None, runs: xr.DataA
     above.set_ylim(bottom=0.0)
     above.set_title(_label_of(drawn), fontsize=9)
     below.set_ylabel("frequency [Hz]")
-    below.set_xlabel(f"{key} [{units}]" if (units := branch[key].attrs.get("units", "")) else key)
+    below.set_xlabel(with_unit(key, branch[key]))
     above.legend(loc="best", fontsize=8, frameon=False)
     return figure
 

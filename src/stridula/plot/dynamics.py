@@ -14,6 +14,7 @@ from matplotlib.patches import Patch
 from ..arrays import Array
 from ..checks import ArgumentError, instance, listed
 from .colours import FAILED_COLOUR, LINE, LINES, REGIME_COLOURS
+from .loci import with_unit
 from .maps import edges
 
 # Colours and marks of sweeps: those of a falling value are rings below the others, so that both are seen.
@@ -61,8 +62,8 @@ def orbit_diagram(found: xr.Dataset) -> Figure:
         axes.plot(places[known], points[known], mark, markersize=size, zorder=order, rasterized=True, **look)
         handles.append(Line2D([], [], linestyle="", marker=mark, markersize=6.0, label=sweep, **look))
     axes.grid(alpha=0.3, linewidth=0.5)
-    axes.set_xlabel(_with_units(key, found[key]))
-    axes.set_ylabel(_with_units(str(orbit.attrs.get("long_name", "orbit")), orbit))
+    axes.set_xlabel(with_unit(key, found[key]))
+    axes.set_ylabel(with_unit(str(orbit.attrs.get("long_name", "orbit")), orbit))
     axes.set_title(str(found.attrs.get("title", "")), fontsize=10)
     axes.legend(handles=handles, loc="best", fontsize=8, frameon=False)
     return figure
@@ -107,8 +108,8 @@ def basin(found: xr.Dataset) -> Figure:
     norm = BoundaryNorm(np.arange(-2, len(colours) - 1) - 0.5, len(colours))
     x, y = (found[key].values.astype(float) for key in (across, along))
     axes.pcolormesh(edges(x), edges(y), numbers.T, cmap=ListedColormap(colours), norm=norm, rasterized=True)
-    axes.set_xlabel(_with_units(across, found[across]))
-    axes.set_ylabel(_with_units(along, found[along]))
+    axes.set_xlabel(with_unit(across, found[across]))
+    axes.set_ylabel(with_unit(along, found[along]))
     axes.set_title(str(found.attrs.get("title", "")), fontsize=11)
     patches = [
         Patch(facecolor=colour, edgecolor="0.5", linewidth=0.5, label=f"{label} ({(numbers == number - 2).mean():.1%})")
@@ -123,8 +124,3 @@ def _paler(colour: str, times: int) -> tuple[float, ...]:
     left = (1.0 - PALER) ** times
     kept: Array = 1.0 - left * (1.0 - np.array(to_rgb(colour)))
     return tuple(kept.tolist())
-
-
-def _with_units(name: str, values: xr.DataArray) -> str:
-    units = str(values.attrs.get("units", ""))
-    return f"{name} [{units}]" if units and units != "1" else name

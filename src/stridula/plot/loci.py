@@ -63,7 +63,7 @@ def root_loci(loci: xr.Dataset, critical: Sequence[xr.Dataset] = ()) -> Figure:
     above.set_ylim(bottom=0.0)
     _scale_growth(below, loci)
     _name_critical(above, loci[key].values, critical)
-    below.set_xlabel(_label(key, loci[key]))
+    below.set_xlabel(with_unit(key, loci[key]))
     present = set(loci["equilibrium"].values)
     _legend(above, [kind for kind in BANDS if kind in present])
     return figure
@@ -129,6 +129,7 @@ def _legend(axes: Axes, kinds: Sequence[str]) -> None:
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2 + len(kinds), fontsize=8, frameon=False)
 
 
-def _label(key: str, values: xr.DataArray) -> str:
+def with_unit(name: str, values: xr.DataArray) -> str:
+    """Return a name with the unit of values, if they have one."""
     units = str(values.attrs.get("units", ""))
-    return f"{key} [{units}]" if units else key
+    return f"{name} [{units}]" if units not in ("", "1") else name

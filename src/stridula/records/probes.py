@@ -294,3 +294,9 @@ def usual_probes(system: System) -> tuple[Probe, ...]:
     if not is_track(system.track):
         return ()
     return (Acceleration(system.track.centre, "transverse" if system.track.is_spatial else "y"),)
+
+
+def displacements_of_tip(system: System) -> tuple[Probe, ...]:
+    """Return the displacements of the tip of the first contact along all axes."""
+    tip = system.contacts[0].tip
+    return tuple(Displacement(tip, axis) for axis in "xyz"[: 3 if tip.body.is_spatial else 2])

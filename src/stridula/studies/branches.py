@@ -35,7 +35,7 @@ from .sources import name_of
 FIRST, LONGEST = 0.01, 1.0 / 15.0
 # Size of a motion, relative to that at the start, below which it is steady sliding.
 FAINT = 0.02
-SLIDING, LIMIT, CLOSED, MOST = "steady sliding", "end of the range", "closed", "most points"
+SLIDING, LIMIT, MOST = "steady sliding", "end of the range", "most points"
 
 
 def follow_cycle(
@@ -107,11 +107,11 @@ def follow_cycle(
     xarray.Dataset
         Over ``point``, along the branch: the parameter, under its key; ``period`` [s], ``frequency`` [Hz], ``stable``,
         ``leading_multiplier`` with real and imaginary ``part``, ``second_frequency`` [Hz]; for each kind of probe its
-        amplitude, such as ``displacement_amplitude``; ``status_share``, the mean share of each ``contact_status`` over
-        the contacts. Over ``event``: ``event_value``, ``event_kind`` (``fold``, ``period doubling``,
+        amplitude, such as ``displacement_amplitude``; ``mean_status_share``, the share of each ``contact_status``,
+        a mean over the contacts. Over ``event``: ``event_value``, ``event_kind`` (``fold``, ``period doubling``,
         ``Neimark-Sacker``, ``grazing``) and ``event_frequency`` [Hz]. ``attrs["begins"]`` and ``attrs["ends"]`` tell
-        where the branch ends: at the ``end of the range``, in ``steady sliding``, ``closed`` in itself, or why it could
-        not be followed.
+        where the branch ends: at the ``end of the range``, in ``steady sliding``, at the ``most points``, or why it
+        could not be followed.
 
     Raises
     ------
@@ -261,6 +261,7 @@ class _Following:
                 near = begun.first.value + side * FIRST * branch.scale
                 if not begun.low <= near <= begun.high:
                     self.ends[side] = LIMIT
+                    self._write()
                     return
                 points.append(branch.at(near, begun.first.cycle))
                 rows.append(self._row(points[-1]))

@@ -78,7 +78,7 @@ def root_loci(
         raise ArgumentError(
             "key", "not have the name of a result of the loci", key, got=f"{brief(key)}: write its full key"
         )
-    grid = _rising(values)
+    grid = rising(values)
     if highest is not None:
         positive("highest", highest)
     with one_thread_each():
@@ -256,7 +256,8 @@ def _verdict(modes: xr.Dataset) -> str:
     return "unstable" if bool(modes.unstable.any()) else "stable" if kind == "sliding" else kind
 
 
-def _rising(values: Sequence[float] | Array) -> Array:
+def rising(values: Sequence[float] | Array) -> Array:
+    """Return values of a parameter as an array; ArgumentError unless they are finite and rise."""
     try:
         grid = np.asarray(values, dtype=float)
     except (TypeError, ValueError):

@@ -19,11 +19,12 @@ from ..integration import Diverged, simulate
 from ..integration.bars import bar
 from ..integration.settings import settings_of
 from ..lowering import assemble
-from ..records import Displacement, Probe
+from ..records import Probe
+from ..records.probes import displacements_of_tip
 from ..records.variables import PROBES, described
 from ..system import System
 from ..version import __version__
-from .loci import Source, SystemOf, origin_of, systems_over
+from .loci import Source, SystemOf, origin_of, rising, systems_over
 from .measures import message_of
 from .sources import name_of
 
@@ -111,7 +112,7 @@ def orbit_diagram(
         runs that continue each other.
     """
     system_of = systems_over(source, key, units, overrides)
-    grid = _rising(values)
+    grid = rising(values)
     if key in RESULTS:
         raise ArgumentError("key", "not have the name of a result of the diagram", key)
     positive("duration", duration)
@@ -140,16 +141,6 @@ def orbit_diagram(
     origin = {"function": name_of(source)} if callable(source) else origin_of(source, overrides)
     origin |= {"stridula_version": __version__, "parameter": key, "take": take}
     return _dataset(found, grid, key, units, most, WORDS[take]).assign_attrs(origin)
-
-
-def _rising(values: Any) -> Array:
-    try:
-        grid = np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
-        grid = np.empty(0)
-    if grid.ndim != 1 or grid.size < 2 or not np.isfinite(grid).all() or (np.diff(grid) <= 0.0).any():
-        raise ArgumentError("values", "be at least 2 increasing finite numbers", values)
-    return grid
 
 
 class _Taken(NamedTuple):
@@ -214,8 +205,7 @@ class _Runs:
 
     def _probes(self, system: System) -> list[Any]:
         if self.probe is None:
-            tip = system.contacts[0].tip
-            return [Displacement(tip, axis) for axis in "xyz"[: 3 if tip.body.is_spatial else 2]]
+            return list(displacements_of_tip(system))
         return [self.probe if not callable(self.probe) else self.probe(system)]
 
     def _taken(self, run: xr.Dataset, period: float | None) -> _Taken:
