@@ -48,6 +48,8 @@ SLOW = [
     "lining",
 ]
 TURNS = [(name, seed) for names, count in ((QUICK, 10), (SLOW, 2)) for name in names for seed in range(count)]
+# Where this string sticks, its tangential force passes zero, and its motion across is rounding.
+TURNS.append(("bowed-string", 400))
 # Cases without a motion: modes of a body, which do not depend on the plane; and cases without bodies in contact.
 MODES = [
     "frequencies-beams",

@@ -71,8 +71,8 @@ ROUNDING = 1e-9
 MOST_TURNS = 16
 # Trials of a search for a speed, and its relative accuracy.
 TRIALS, SETTLED = 200, 1e-15
-# A ratio that nothing holds.
-BEYOND = 1e300
+# A ratio that nothing holds; its square is still a number.
+BEYOND = 1e150
 
 
 @strict_pasted
@@ -99,8 +99,12 @@ def stage_moments(begin: Number, size: Number, first: Tangents, second: Tangents
 
 
 @strict
-def undone_by(matrix: Matrix, vector: Tangents) -> Tangents:
-    """Return the force whose displacement under a compliance is a vector, beyond all bounds where there is none."""
+def undone_by(matrix: Matrix, vector: Tangents, usual: Number) -> Tangents:
+    """Return the force whose displacement under a compliance is a vector, beyond all bounds where there is none.
+
+    Motion that no force undoes is rounding beside the motion itself, or beside that of a `usual` force: where the force
+    passes zero, the vector itself is rounding.
+    """
     a, b, c, d = matrix
     determinant, trace = a * d - b * c, a + d
     if abs(determinant) > SINGULAR * trace * trace:
@@ -110,7 +114,7 @@ def undone_by(matrix: Matrix, vector: Tangents) -> Tangents:
         return NOTHING
     way = direction_of(Tangents(a, c) if a >= d else Tangents(b, d), ALONG_A)
     moved = along(vector, way)
-    if trace > 0.0 and size_of(plus(vector, -moved, way)) <= ROUNDING * size:
+    if trace > 0.0 and size_of(plus(vector, -moved, way)) <= ROUNDING * max(size, trace * usual):
         return Tangents(way.a * moved / trace, way.b * moved / trace)
     return Tangents(BEYOND * vector.a / size, BEYOND * vector.b / size)
 
@@ -132,7 +136,7 @@ def slip_after(free: Tangents, pull: Matrix, law: Law, step: Number) -> tuple[Ta
 
     The ratio of incipient sliding brings it to rest.
     """
-    needed, most = undone_by(pull, free), sliding_ratio(law, 0.0)
+    needed, most = undone_by(pull, free, 1.0), sliding_ratio(law, 0.0)
     asked = size_of(needed)
     if asked <= most:
         return NOTHING, needed
@@ -142,7 +146,7 @@ def slip_after(free: Tangents, pull: Matrix, law: Law, step: Number) -> tuple[Ta
     speed, ratio, way = high, most, free
     for _ in range(TRIALS):
         ratio = sliding_ratio(law, speed / step)
-        way = undone_by(stiffened(speed, ratio, pull), free)
+        way = undone_by(stiffened(speed, ratio, pull), free, 1.0)
         error = 1.0 / size_of(way) - 1.0
         if abs(error) <= SETTLED:
             break
@@ -200,10 +204,10 @@ def hold_from(begin: Number, drive: DriveInSpace, pull: Matrix, held: Number) ->
     end : float
         Time at which it breaks away.
     """
-    first = undone_by(pull, plus(drive.begin, begin, drive.grows))
+    first = undone_by(pull, plus(drive.begin, begin, drive.grows), 1.0)
     if size_of(first) > held:
         return NOTHING, NOTHING, begin
-    last = undone_by(pull, plus(drive.begin, 1.0, drive.grows))
+    last = undone_by(pull, plus(drive.begin, 1.0, drive.grows), 1.0)
     grows = plus(last, -1.0, first)
     share = 1.0 if size_of(last) <= held else breaks_at(first, grows, held)
     end = begin + share * (1.0 - begin) if share < 1.0 else 1.0
@@ -276,7 +280,7 @@ def ratio_of_stick(gap: Number, missed: Tangents, w: ComplianceInSpace, otherwis
 def sticking_forces(gap: Number, slips: Tangents, w: ComplianceInSpace) -> tuple[Number, Tangents]:
     """Return the forces that close `gap` and undo both slips (5b), beyond all bounds if no force moves a tangent."""
     missed = Tangents(slips.a - w.an * gap / w.nn, slips.b - w.bn * gap / w.nn)
-    held = undone_by(under_closed(w), missed)
+    held = undone_by(under_closed(w), missed, abs(gap) / w.nn)
     if is_beyond(held):
         return -gap / w.nn, held
     return (w.na * held.a + w.nb * held.b - gap) / w.nn, held
@@ -327,8 +331,9 @@ def ratio_over_step(
     pull, moved = scaled_matrix(normal, of_tangents(w)), plus(slips, normal, by_normal(w))
     held = holding_ratio(law, was == STICKING and free.let_go <= 0.5)
     missed = plus(moved, 1.0, strays)
-    driven = undone_by(pull, missed)
+    driven = undone_by(pull, missed, 1.0)
     needed = driven if was == SLIDING else ratio_of_stick(gap, plus(slips, 1.0, strays), w, driven)
+    driven = needed if is_beyond(driven) else driven
     asked = size_of(needed)
     if was == STICKING and last.a == 0.0 and last.b == 0.0:
         # At rest for a step or more: the force grows through the step as it did in the last one.
@@ -338,7 +343,7 @@ def ratio_over_step(
         beyond = plus(needed, 1.0, grows)
         if free.let_go <= 0.5 and asked <= held and size_of(beyond) <= held:
             return needed, plus(scaled(0.5, needed), 1.0, over(grows, 3.0)), STICKING, 1.0
-        drive = DriveInSpace(missed, times(pull, grows) if asked < BEYOND else NOTHING)
+        drive = DriveInSpace(missed, NOTHING if is_beyond(needed) else times(pull, grows))
         if asked > held:
             return after_break(earlier, needed, driven, held, drive, pull, law, step)
         broke = breaks_at(needed, grows, held)
