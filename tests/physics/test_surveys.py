@@ -53,9 +53,9 @@ def test_a_mode_grows_in_time_as_its_eigenvalue_says_and_lives_on():
     assert np.isnan(found.sound_level).all()
 
 
-def test_a_point_that_does_not_grow_has_a_verdict_and_no_run(monkeypatch):
+def test_a_point_that_does_not_grow_has_a_verdict_and_without_kicks_no_run(monkeypatch):
     monkeypatch.setattr(Scenario, "simulate", lambda *words, **more: pytest.fail("it ran"))
-    found = st.squeal_survey(flutter, {"friction": [0.2, 0.5]})
+    found = st.squeal_survey(flutter, {"friction": [0.2, 0.5]}, kicks=0)
     assert found.verdict.values.tolist() == ["stable", "stable"]
     assert found.unstable_modes.values.tolist() == [0.0, 0.0]
     assert found.equilibria.values.tolist() == ["one", "one"]
@@ -96,7 +96,7 @@ def test_a_run_that_leaves_its_track_is_reported():
 def runs_of(system: st.System, amplitude: float) -> Runs:
     bare, _ = without_start(system, None)
     scenario = Scenario("", "", bare, 1.0, st.ExactModal(), None, 1e6, ())
-    options = Options(None, 1.0, amplitude, 0.1, np.inf, None)
+    options = Options(None, 1.0, amplitude, 0.1, np.inf, None, cycles=False)
     return Runs(scenario, SLIDING, modes_at_rest(bare, SLIDING), options, lambda: None)
 
 
@@ -128,13 +128,13 @@ def test_growth_is_not_given_where_several_modes_contribute():
     """Negative control: the run of another system does not contain this mode."""
     runs, others = (runs_of(flutter(friction), 1e-3) for friction in (0.8, 1.2))
     (number,) = runs.rest.reach
-    run = runs.of(number)
+    run = runs.of(number).run
     assert growth_in_time(run, runs.still, runs.rest, number, 1e-3).real == pytest.approx(
         runs.rest.exponents[number].real, rel=1e-3
     )
     late = run.isel(time=slice(run.sizes["time"] // 2, None))
     assert np.isnan(growth_in_time(late, runs.still, runs.rest, number, 1e-3))
-    strange = others.of(number)
+    strange = others.of(number).run
     assert growth_in_time(strange, others.still, runs.rest, number, 1e-3).real > 1.5 * runs.rest.exponents[number].real
 
 
@@ -229,7 +229,9 @@ def test_a_run_that_fails_is_the_message_of_its_point(monkeypatch):
 
     monkeypatch.setattr(Scenario, "simulate", fails)
     found = st.squeal_survey(flutter, {"friction": [0.5, 0.9]})
-    assert found.message.values.tolist() == ["", "mode at 1006 Hz: no room"]
+    quiet, growing = found.message.values.tolist()
+    assert (quiet.startswith("kick of the mode at "), quiet.endswith(" Hz: no room")) == (True, True)
+    assert growing == "mode at 1006 Hz: no room"
     assert found.fate.values.ravel().tolist() == ["", "failed"]
 
 

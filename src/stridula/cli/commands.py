@@ -290,6 +290,10 @@ def survey(
         str | None, typer.Option(metavar="HZ", help="Count modes above this frequency, but do not simulate them.")
     ] = None,
     velocity: SlipVelocity = None,
+    cycles: Annotated[bool, typer.Option(help="Search limit cycles at the ends of runs directly.")] = True,
+    kicks: Annotated[
+        int, typer.Option(metavar="N", min=0, help="Decaying modes that are kicked where no mode grows.")
+    ] = 1,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw a map of squeal over two keys.")] = None,
     table: Annotated[
         str | None, typer.Option(metavar="FILE.csv", help="Write a row for each mode of each point.")
@@ -320,6 +324,8 @@ def survey(
         amplitude=amplitude,
         highest=highest,
         velocity=velocities(velocity),
+        cycles=cycles,
+        kicks=kicks,
         workers=workers,
     )
     print(lines)

@@ -69,6 +69,8 @@ def survey_scenario(
     if found.sizes["mode"]:
         console.print(_modes(found, title))
     console.print(escape(_verdicts(found)), highlight=False)
+    if quiet := _kicks(found):
+        console.print(escape(quiet), highlight=False)
     return closing(found, out)
 
 
@@ -144,6 +146,20 @@ def _span(values: Any, form: str) -> str:
         return "-"
     low, high = format(float(known.min()), form), format(float(known.max()), form)
     return low if low == high else f"{low} to {high}"
+
+
+def _kicks(found: xr.Dataset) -> str:
+    """Return the quiet points that a kick lets squeal, nothing without any."""
+    kicks = found["kick"].values.ravel()
+    least = np.flatnonzero(np.isfinite(kicks))
+    if not least.size:
+        return ""
+    least = least[np.argsort(kicks[least], kind="stable")]
+    tones = found["kick_tone"].values.ravel()[least]
+    return (
+        f"kicked into squeal: {counted(least.size, 'stable point')}, at {_span(tones, NUMBER)} Hz; the smallest kick "
+        f"is {kicks[least[0]]:.3g} m, at {_place(found, int(least[0]))}"
+    )
 
 
 def _verdicts(found: xr.Dataset) -> str:

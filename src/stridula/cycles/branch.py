@@ -20,6 +20,8 @@ from .returning import Orbit, Return
 
 # Change of the parameter, relative to its range, for the derivative.
 PERTURBED = 1e-6
+# Largest change of the parameter in a search, relative to its range.
+STRAY = 0.5
 # Most steps of Newton's method for a point, and those up to which the next point may lie farther away.
 MOST_STEPS, EASY = 10, 4
 # Factors of the distance to the next point after an easy point and after one that was not found.
@@ -187,6 +189,7 @@ class Branch:
         self, vector: Array, period: float, value: float, along: Condition, near: Return
     ) -> tuple[Point, int]:
         """Return the periodic motion next to a guess, in the plane across a direction."""
+        guessed = value
         try:
             now = self._moved(near.of_period, value, vector, period, near)
             for number in range(MOST_STEPS):
@@ -202,6 +205,8 @@ class Branch:
                 period += 0.0 if self.is_driven else step.amounts[0]
                 if not 0.2 * near.orbit.period < period < 5.0 * near.orbit.period:
                     raise NotFound("the period does not stay near")
+                if not abs(value - guessed) < STRAY * self.scale:
+                    raise NotFound("the parameter does not stay near")
                 now = self._moved(near.of_period, value, step.vector, period, now)
                 if not now.residual < np.inf:
                     break
@@ -211,7 +216,10 @@ class Branch:
 
     def _moved(self, of_period: PeriodMap, value: float, vector: Array, period: float, near: Return) -> Return:
         """Return a motion at a value of the parameter after its period."""
-        flat = self.assembly_of(value)
+        try:
+            flat = self.assembly_of(value)
+        except ValueError as error:
+            raise NotFound(str(error)) from None
         if flat.mode_count != len(near.vectors.arrays.angular_frequency):
             raise NotFound(f"the number of modes changes at {value:.6g}")
         if self.is_driven:

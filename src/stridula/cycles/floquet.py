@@ -110,15 +110,15 @@ class Multipliers:
 def multipliers_of(cycle: Return, is_driven: bool) -> Multipliers:
     """Return the multipliers of a periodic motion: all of them for few modes, else the largest.
 
-    Where contacts stop or reverse, the place of that event within its step changes with the state, which the derivative
-    at a state has to first order in the step. If the multiplier along the cycle is far from 1, they are those of mean
-    derivatives over two steps, unless that is farther from it. If drives prescribe the phase, no multiplier tells; mean
-    derivatives are taken.
+    Where contacts stop, reverse or land, the place of that event within its step changes with the state, which the
+    derivative at a state has to first order in the step. If the multiplier along the cycle is far from 1, they are
+    those of mean derivatives over two steps, unless that is farther from it. If drives prescribe the phase, no
+    multiplier tells; mean derivatives are taken where contacts stop or reverse.
     """
     if is_driven:
         return _by_arnoldi(cycle, cycle.mean_product if cycle.passed.stops else _near(cycle), None)
     found = _by_arnoldi(cycle, _near(cycle), 1.0)
-    if cycle.passed.stops and not found.accuracy < ACCURATE:
+    if not found.accuracy < ACCURATE:
         mean = _by_arnoldi(cycle, cycle.mean_product, 1.0)
         return mean if mean.accuracy < found.accuracy else found
     return found

@@ -127,9 +127,20 @@ def limit_cycle(
     if motion:
         settings = replace(settings, probes=(*probes_of(system, settings), *map(ModalMotion, system.bodies)))
     with _told(progress, title or "limit cycle", tolerance) as tell:
-        found, is_driven = cycle_near(system, asked, tell)
-        multipliers = multipliers_of(found.best, is_driven)
-    return cycle_record(system, found.best, multipliers, settings, title, len(found.residuals) - 1)
+        return recorded_cycle(system, replace(asked, settings=settings), tell, title)
+
+
+def recorded_cycle(system: System, asked: Asked, tell: Tell, title: str = "") -> xr.Dataset:
+    """Return the record of a periodic motion near a start, as of `limit_cycle`.
+
+    Raises
+    ------
+    NoCycle
+        If there is none.
+    """
+    found, is_driven = cycle_near(system, asked, tell)
+    multipliers = multipliers_of(found.best, is_driven)
+    return cycle_record(system, found.best, multipliers, asked.settings, title, len(found.residuals) - 1)
 
 
 def cycle_near(system: System, asked: Asked, tell: Tell) -> tuple[Found, bool]:
@@ -142,7 +153,9 @@ def cycle_near(system: System, asked: Asked, tell: Tell) -> tuple[Found, bool]:
     """
     try:
         begun = beginning_of(system, asked)
-        found = closed_orbit(begun.of_period, begun.vectors, begun.orbit, begun.is_driven, asked.tolerance, tell)
+        found = closed_orbit(
+            begun.of_period, begun.vectors, begun.orbit, begun.is_driven, asked.tolerance, tell, most=asked.most
+        )
     except MarchEnded as error:
         raise NoCycle(f"no cycle: {error} within a period near the start") from None
     if not found.is_periodic:

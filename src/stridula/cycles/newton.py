@@ -63,6 +63,7 @@ def closed_orbit(
     tolerance: float,
     tell: Tell,
     steps: int = MOST_STEPS,
+    most: float = np.inf,
 ) -> Found:
     """Search for a periodic motion near an orbit.
 
@@ -82,6 +83,8 @@ def closed_orbit(
         Called with the progress.
     steps : int, optional
         Most steps of the method.
+    most : float, optional
+        Periods marched after which no further step begins.
 
     Raises
     ------
@@ -104,6 +107,8 @@ def closed_orbit(
         found.residuals.append(now.residual)
         if now.residual < found.best.residual:
             found.best = now
+        if of_period.counter.marched > most:
+            break
         if vain == VAIN or (vain > 1 and _is_within_a_step(found.best)):
             break
     if found.best.residual >= tolerance and not _is_within_a_step(found.best):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import ceil
+from math import ceil, inf
 from typing import Any
 
 import numpy as np
@@ -65,6 +65,8 @@ class Asked:
         Periods that are marched before the search.
     tolerance : float, optional
         Largest residual [1].
+    most : float, optional
+        Periods marched after which the search takes no further step.
     """
 
     start: xr.Dataset | InitialEquilibrium | None
@@ -72,6 +74,7 @@ class Asked:
     frequency: float | None
     settle: int | None
     tolerance: float = TOLERANCE
+    most: float = inf
 
     def check(self) -> None:
         """Raise ValueError at the first argument that no system allows."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
@@ -37,6 +38,9 @@ class ModesAtRest:
         For each growing mode, by its number, the largest displacement of a contact point [m] at which a contact opens,
         lands, sticks or slips by linear theory; 0 if the least motion is enough, NaN for modes that move no contact
         point.
+    quiet : dict
+        The same for some modes that decay, those that decay least in a period first; without modes whose reach is 0 or
+        NaN, or that do not vibrate.
     normal_force, slip_velocity : ndarray, shape (contacts,)
         Normal forces [N] and slip velocities [m/s] in equilibrium.
     """
@@ -44,6 +48,7 @@ class ModesAtRest:
     exponents: Array
     round_off: float
     reach: dict[int, float]
+    quiet: dict[int, float]
     normal_force: Array
     slip_velocity: Array
 
@@ -73,7 +78,7 @@ def equilibrium_at_start(system: System, asked: InitialEquilibrium) -> Equilibri
     return find_equilibrium(structure, given_velocity(asked.velocity, structure, status), status)
 
 
-def modes_at_rest(system: System, asked: InitialEquilibrium) -> ModesAtRest:
+def modes_at_rest(system: System, asked: InitialEquilibrium, quiet: int = 0, highest: float = np.inf) -> ModesAtRest:
     """Return the modes about the initial equilibrium of a run, numbered as in `InitialEquilibrium`.
 
     Parameters
@@ -82,6 +87,10 @@ def modes_at_rest(system: System, asked: InitialEquilibrium) -> ModesAtRest:
         The system.
     asked : InitialEquilibrium
         The equilibrium.
+    quiet : int, optional
+        Number of decaying modes whose reach is returned.
+    highest : float, optional
+        Highest angular frequency of these [rad/s].
 
     Raises
     ------
@@ -93,7 +102,12 @@ def modes_at_rest(system: System, asked: InitialEquilibrium) -> ModesAtRest:
     found = modes_of(structure, motion)
     grows = np.flatnonzero(found.values.real > round_off(structure)).tolist()
     reach = {number: _reach(whole, structure, at, motion, found, number) for number in grows}
-    return ModesAtRest(found.values, round_off(structure), reach, at.normal_force, at.slip_velocity)
+    vibrates = (found.values.imag > 0.0) & (found.values.imag <= highest)
+    decays = np.flatnonzero(vibrates & (found.values.real < -round_off(structure)))
+    least = decays[np.argsort(-found.values.real[decays] / found.values.imag[decays], kind="stable")].tolist()
+    reaches = ((number, _reach(whole, structure, at, motion, found, number)) for number in least)
+    kept = dict(islice(((number, one) for number, one in reaches if 0.0 < one < np.inf), quiet))
+    return ModesAtRest(found.values, round_off(structure), reach, kept, at.normal_force, at.slip_velocity)
 
 
 def _reach(

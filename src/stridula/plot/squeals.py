@@ -40,7 +40,8 @@ def squeal_map(found: xr.Dataset) -> Figure:
 
     The first parameter is along x. Colours show the frequency of the strongest tone of the run whose normal force
     fluctuates most; numbers count the modes that persist in limit cycles of their own. A thick line bounds the region
-    where a mode of linear theory grows; a dashed line bounds the region of steady sliding.
+    where a mode of linear theory grows; a dashed line bounds the region of steady sliding. Triangles mark stable points
+    that a kick lets squeal.
 
     Parameters
     ----------
@@ -75,6 +76,7 @@ def squeal_map(found: xr.Dataset) -> Figure:
     if scale is not None and tones.size <= MOST_NUMBERS:
         _write_numbers(axes, found["living_modes"].values, scale(tones), x, y)
         patches.append(Line2D([], [], linestyle="none", marker="$n$", color="black", label="n modes live"))
+    patches += _draw_kicks(axes, found, x, y)
     lines = _draw_bounds(axes, found["verdict"].values, x, y)
     name_axis(axes, found, across, "x")
     name_axis(axes, found, along, "y")
@@ -142,6 +144,16 @@ def _write_numbers(axes: Axes, living: Array, shade: Array, x: Array, y: Array) 
     for i, j in zip(*np.nonzero(np.isfinite(living) & ~np.ma.getmaskarray(shade) & np.isfinite(shade)), strict=True):
         colour = "white" if shade[i, j] < 0.5 else "black"
         axes.text(x[i], y[j], f"{int(living[i, j])}", ha="center", va="center", fontsize=7, color=colour)
+
+
+def _draw_kicks(axes: Axes, found: xr.Dataset, x: Array, y: Array) -> list[Line2D]:
+    """Mark the stable points that a kick lets squeal, and return the handles of the legend."""
+    kicked = np.isfinite(found["kick"].values) if "kick" in found else np.zeros((1, 1), dtype=bool)
+    if not kicked.any():
+        return []
+    i, j = np.nonzero(kicked)
+    words = f"stable, squeals after a kick ({i.size})"
+    return axes.plot(x[i], y[j], "^", color="none", markeredgecolor="black", markersize=5, label=words)
 
 
 def _draw_bounds(axes: Axes, verdict: Array, x: Array, y: Array) -> list[Line2D]:

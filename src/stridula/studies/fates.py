@@ -17,8 +17,11 @@ from ..analysis.regimes import regime_of
 from ..checks import ArgumentError
 from ..drives import InitialEquilibrium
 from ..linear.reach import ModesAtRest
+from ..records import ModalMotion
+from ..records.repeated import repeat_cycle
 from ..records.variables import STATUS_WORDS
 from ..scenarios.load import Scenario
+from .cycle_ends import cycle_after
 from .swings import growth_in_time, linear_time, relative, swing
 from .tones_of_modes import Tone, tones_of
 
@@ -34,6 +37,8 @@ PERIODS, SHORTEST_WINDOW = 100.0, 0.1
 SETTLING = 5.0
 # Number of samples recorded in a period of the highest mode of linear theory, if no sound is computed.
 SAMPLES = 20.0
+# Time after which a limit cycle is searched, once contacts open, stick or slip, in units of 1 / growth.
+SEARCHED = 2.0
 # A limit cycle is steady if the ratio of its swings in two successive windows is at most this.
 STEADY = 1.25
 # A motion has left linear theory if it grows by less than this fraction of the growth there.
@@ -61,6 +66,10 @@ class Options:
         Highest frequency of the modes that are simulated [Hz].
     velocity : float, tuple of float or None
         Slip velocity where nothing prescribes it [m/s].
+    cycles : bool
+        Whether limit cycles are searched directly.
+    kicks : int
+        Number of decaying modes from which squeal is searched where none grows.
     """
 
     duration: float | None
@@ -69,6 +78,35 @@ class Options:
     resolution: float
     highest: float
     velocity: float | tuple[float, ...] | None
+    cycles: bool = True
+    kicks: int = 0
+
+
+@dataclass(frozen=True)
+class Ended:
+    """The end of a run from a growing mode.
+
+    Attributes
+    ----------
+    run : xarray.Dataset
+        The run.
+    cycle : xarray.Dataset or None
+        Limit cycle near its end, if one was found.
+    record : xarray.Dataset
+        The run itself, or the limit cycle at which it ends, repeated.
+    measured : float
+        Time at the end of `record` that is measured [s].
+    """
+
+    run: xr.Dataset
+    cycle: xr.Dataset | None
+    record: xr.Dataset
+    measured: float
+
+    @property
+    def is_periodic(self) -> bool:
+        """Whether the run ends at the limit cycle."""
+        return self.record is not self.run
 
 
 @dataclass(frozen=True)
@@ -101,8 +139,8 @@ class Runs:
         exponents = self.rest.exponents
         return [number for number in self.rest.reach if exponents[number].imag <= 2.0 * np.pi * self.options.highest]
 
-    def of(self, number: int) -> xr.Dataset:
-        """Return a run perturbed by a mode, until its limit cycle is steady or the longest time is reached.
+    def of(self, number: int) -> Ended:
+        """Return a run perturbed by a mode, until its limit cycle is found or steady, or the longest time is reached.
 
         Raises
         ------
@@ -116,23 +154,61 @@ class Runs:
             raise ArgumentError("mode", "move a contact point to be simulated", got=f"{number}, which moves none")
         start = replace(self.start, mode=number, amplitude=self.options.amplitude * reach)
         given, longest = self.options.duration, self.options.longest
-        run = self._simulate(start, given or min(longest, self._time(number)))
-        while given is None and run.attrs["ended"] == "finished" and not self.is_settled(run, number):
-            lasted = _length(run)
-            if lasted > longest - 0.5 * self.window(run, number):
-                break
-            more = self._simulate(start, min(lasted, longest - lasted), start=run)
-            run = xr.concat([run, more], "time", data_vars="minimal", coords="minimal", compat="override").assign(
-                {name: more[name] for name in more if str(name).startswith("state_")}
-            )
-            run.attrs = more.attrs
+        if given:
+            run = self.simulate(start, given)
+            return self._ended(run, number, self.cycle_of(run, number))
+        run = self.simulate(start, min(longest, self._time(number, SEARCHED, 1)))
+        cycle, searched = self.cycle_of(run, number), length_of(run)
+        if cycle is None or not self.is_at(cycle, run, number):
+            run = self.longer(run, start, min(longest, self._time(number, SETTLING, 2)) - searched)
+            while not self.is_settled(run, number) and length_of(run) < longest - 0.5 * self.window(run, number):
+                longer = self.longer(run, start, min(length_of(run), longest - length_of(run)))
+                if longer is run:
+                    break
+                run = longer
+            if length_of(run) > searched:
+                cycle = self.cycle_of(run, number) or cycle
+        return self._ended(run, number, cycle)
+
+    def longer(self, run: xr.Dataset, start: InitialEquilibrium, lasts: float) -> xr.Dataset:
+        """Return a run continued for a time, itself if it has ended or the time is none."""
+        if run.attrs["ended"] != "finished" or lasts * self.sample_rate < 1.0:
+            return run
+        more = self.simulate(start, lasts, start=run)
+        run = xr.concat([run, more], "time", data_vars="minimal", coords="minimal", compat="override").assign(
+            {name: more[name] for name in more if str(name).startswith("state_")}
+        )
+        run.attrs = more.attrs
         return run
+
+    def cycle_of(self, run: xr.Dataset, number: int) -> xr.Dataset | None:
+        """Return the limit cycle near the end of a run, None if there is none or none is asked for."""
+        if not self.options.cycles or run.attrs["ended"] != "finished":
+            return None
+        if self.is_dead(run, number) or not self.has_left(run, number):
+            return None
+        frequency = float(self.rest.exponents[number].imag) / (2.0 * np.pi)
+        probes = tuple(map(ModalMotion, self.scenario.system.bodies)) if self.is_heard else ()
+        return cycle_after(self.scenario, run, frequency, probes, self.watch) if frequency > 0.0 else None
+
+    def is_at(self, cycle: xr.Dataset, run: xr.Dataset, number: int) -> bool:
+        """Return whether a cycle is stable and swings like the end of a run."""
+        _, after = self.swings(run, number)
+        swings = swing(relative(cycle, self.rest))
+        return bool(cycle["stable"]) and after > 0.0 and bool(abs(np.log(swings / after)) < np.log(STEADY))
+
+    def _ended(self, run: xr.Dataset, number: int, cycle: xr.Dataset | None) -> Ended:
+        if cycle is None or not self.is_at(cycle, run, number):
+            return Ended(run, cycle, run, 2.0 * self.window(run, number))
+        measured = 2.0 * self.window_of(number)
+        # What sounds at the start of a record is over before its end is measured.
+        return Ended(run, cycle, repeat_cycle(cycle, 1.5 * measured), measured)
 
     @cached_property
     def still(self) -> xr.Dataset:
         """A run from equilibrium without a mode, as long as modes stay within linear theory."""
         lasts = [linear_time(self.rest, number, self.options.amplitude) for number in self.followed]
-        return self._simulate(self.start, min(max(lasts), self.options.duration or self.options.longest))
+        return self.simulate(self.start, min(max(lasts), self.options.duration or self.options.longest))
 
     @cached_property
     def sample_rate(self) -> float:
@@ -155,7 +231,7 @@ class Runs:
 
     def window(self, run: xr.Dataset, number: int) -> float:
         """Return the length of the windows in which a run is analysed [s]."""
-        return min(self._window(number), 0.5 * _length(run))
+        return min(self.window_of(number), 0.5 * length_of(run))
 
     def is_settled(self, run: xr.Dataset, number: int) -> bool:
         """Return whether a run has reached a steady limit cycle or rest."""
@@ -167,38 +243,40 @@ class Runs:
         shares = last(run, 2.0 * window)["status_share"].values
         if bool(((shares > 0.0) & (shares < 1.0)).any() or np.ptp(shares, axis=0).any()):
             return True
-        before, after = self._swings(run, number)
+        before, after = self.swings(run, number)
         return after > 0.0 and np.log(after / before) < BENT * float(self.rest.exponents[number].real) * window
 
     def is_steady(self, run: xr.Dataset, number: int) -> bool:
         """Return whether the swings of a run in its last two windows are similar."""
-        before, after = self._swings(run, number)
+        before, after = self.swings(run, number)
         return after > 0.0 and before > 0.0 and bool(abs(np.log(after / before)) < np.log(STEADY))
 
     def is_dead(self, run: xr.Dataset, number: int) -> bool:
         """Return whether a run has come to rest."""
         motion = relative(run, self.rest)
         largest = max(swing(piece) for piece in np.array_split(motion, min(PIECES, len(motion))))
-        _, after = self._swings(run, number)
+        _, after = self.swings(run, number)
         return after < DEAD and after < FADED * largest
 
-    def _swings(self, run: xr.Dataset, number: int) -> tuple[float, float]:
+    def swings(self, run: xr.Dataset, number: int) -> tuple[float, float]:
         """Return the swings in the last two windows of a run [1]."""
         motion, window = relative(run, self.rest), self.window(run, number)
         samples = max(1, round(window / float(run.attrs["sample_interval"])))
         return swing(motion[-2 * samples : -samples]), swing(motion[-samples:])
 
-    def _time(self, number: int) -> float:
+    def _time(self, number: int, settling: float, windows: int) -> float:
         """Return the time in which a mode grows, settles and is measured [s]."""
         growth = float(self.rest.exponents[number].real)
-        return (float(np.log(1.0 / self.options.amplitude)) + SETTLING) / growth + 2.0 * self._window(number)
+        return (float(np.log(1.0 / self.options.amplitude)) + settling) / growth + windows * self.window_of(number)
 
-    def _window(self, number: int) -> float:
+    def window_of(self, number: int) -> float:
+        """Return the length of the windows in which the end of a long run is analysed [s]."""
         exponent = self.rest.exponents[number]
         slowest = max(abs(float(exponent.imag)), abs(float(exponent.real)))
         return max(SHORTEST_WINDOW, PERIODS * 2.0 * np.pi / slowest)
 
-    def _simulate(self, begins: InitialEquilibrium, lasts: float, **words: Any) -> xr.Dataset:
+    def simulate(self, begins: InitialEquilibrium, lasts: float, **words: Any) -> xr.Dataset:
+        """Return a run from an equilibrium."""
         system = replace(self.scenario.system, drives=(*self.scenario.system.drives, begins))
         recorded: dict[str, Any] = {
             "sample_rate": self.sample_rate,
@@ -225,27 +303,26 @@ def fate_of(runs: Runs, number: int) -> dict[str, Any]:
     number : int
         Number of the mode.
     """
-    run, rest = runs.of(number), runs.rest
+    ended, rest = runs.of(number), runs.rest
+    run, measured = ended.run, ended.measured
     seen = growth_in_time(run, runs.still, rest, number, runs.options.amplitude)
-    measured = 2.0 * runs.window(run, number)
-    end = last(run, measured)
-    which = _liveliest(end, rest)
-    contact, force = _of_contact(end, which), float(rest.normal_force[which])
-    signal = contact["normal_force"]
-    if swing(signal.values[:, None]) < 1e-6 * force:
-        signal = _liveliest_slip(contact)
+    end = last(ended.record, measured)
+    contact, signal = _of_contact(end, _liveliest(end, rest)), liveliest_signal(end, rest)
     grows = np.array(list(rest.reach))
-    is_dead = runs.is_dead(run, number)
-    found = [] if is_dead else tones_of(signal, rest.exponents, grows, runs.options.resolution)
-    regime = regime_of(run, start=max(0.0, _length(run) - measured))
-    fate, joined = _fate(runs, run, number, found)
+    found = (
+        []
+        if not ended.is_periodic and runs.is_dead(run, number)
+        else tones_of(signal, rest.exponents, grows, runs.options.resolution)
+    )
+    regime = regime_of(ended.record, start=max(0.0, length_of(ended.record) - measured))
+    fate, joined = _fate(runs, ended, number, found)
     shares = end["status_share"].mean([name for name in end["status_share"].dims if name != "contact_status"])
     return {
         "seen_frequency": abs(seen.imag) / (2.0 * np.pi),
         "seen_growth_rate": seen.real,
-        "duration": _length(run),
-        "reached": float(runs.has_left(run, number)),
-        "steady": float(runs.is_steady(run, number)),
+        "duration": length_of(run),
+        "reached": float(ended.is_periodic or runs.has_left(run, number)),
+        "steady": float(ended.is_periodic or runs.is_steady(run, number)),
         "fate": fate,
         "joined": joined,
         "regime": str(regime["regime"]),
@@ -253,23 +330,46 @@ def fate_of(runs: Runs, number: int) -> dict[str, Any]:
         "normal_force_rms": float(contact["normal_force"].std()),
         "slip_velocity_rms": swing(contact["slip_velocity"].values.reshape(contact.sizes["time"], -1)),
         **{f"{word}_share": float(share) for word, share in zip(STATUS_WORDS, shares.values, strict=True)},
-        "sound_level": _sound_level(runs, run, measured),
+        "sound_level": _sound_level(runs, ended.record, measured),
+        **_of_cycle(ended.cycle),
         "tones": [tone._asdict() for tone in found],
     }
 
 
-def _fate(runs: Runs, run: xr.Dataset, number: int, found: list[Tone]) -> tuple[str, int]:
+def _of_cycle(cycle: xr.Dataset | None) -> dict[str, float]:
+    """Return the frequency of a limit cycle and its stability, nothing without one."""
+    if cycle is None:
+        return {}
+    sizes = np.hypot(*cycle["multiplier"].values[~cycle["trivial"].values].T)
+    return {
+        "cycle_frequency": float(cycle["frequency"]),
+        "cycle_stable": float("nan") if cycle.attrs["verdict"].startswith("unknown") else float(cycle["stable"]),
+        "leading_multiplier": float(sizes[0]) if sizes.size else 0.0,
+    }
+
+
+def _fate(runs: Runs, ended: Ended, number: int, found: list[Tone]) -> tuple[str, int]:
     """Return the fate of a mode, and the number of the mode that it joins, -1 for none."""
+    run = ended.run
     if run.attrs["ended"] == LEFT:
         return LEFT, -1
-    if runs.is_dead(run, number):
+    if not ended.is_periodic and runs.is_dead(run, number):
         return DIES, -1
-    if not runs.has_left(run, number):
+    if not ended.is_periodic and not runs.has_left(run, number):
         return NOT_REACHED, -1
     mode = found[0].mode if found else -1
     if mode == number:
         return LIVES, -1
     return (JOINS, mode) if mode in runs.rest.reach else (CHANGES, -1)
+
+
+def liveliest_signal(end: xr.Dataset, rest: ModesAtRest) -> xr.DataArray:
+    """Return the normal force of the contact where it swings most, or its slip velocity if the force is constant."""
+    which = _liveliest(end, rest)
+    contact = _of_contact(end, which)
+    force = contact["normal_force"]
+    is_constant = swing(force.values[:, None]) < 1e-6 * float(rest.normal_force[which])
+    return _liveliest_slip(contact) if is_constant else force
 
 
 def _liveliest(end: xr.Dataset, rest: ModesAtRest) -> int:
@@ -303,5 +403,6 @@ def last_of(signal: xr.DataArray, lasts: float, run: xr.Dataset) -> xr.DataArray
     return signal.isel(time=slice(-round(lasts / float(run.attrs["sample_interval"])), None))
 
 
-def _length(run: xr.Dataset) -> float:
+def length_of(run: xr.Dataset) -> float:
+    """Return the time that a run lasts [s]."""
     return float(run.sizes["time"] * run.attrs["sample_interval"])

@@ -15,6 +15,7 @@ from ..linear.structure import SLIDING
 from ..scenarios.load import Scenario
 from ..system import System
 from .fates import FAILED, Options, Runs, fate_of
+from .kicks import smallest_kick
 from .sources import Source
 from .task import NOT_BUILT, NOT_STARTED, Outcome, failing
 
@@ -73,10 +74,13 @@ class SurveyTask:
             outcome["values"] |= {} if at.kind == JAMMED else {"unstable_modes": 0.0}
             return
         start = replace(start, status=at.status)
-        rest = modes_at_rest(system, start)
+        highest = 2.0 * np.pi * self.options.highest
+        rest = modes_at_rest(system, start, self.options.kicks, highest)
         runs = Runs(replace(scenario, system=system), start, rest, self.options, watch)
         outcome["ended"] = UNSTABLE if rest.reach else STABLE
         outcome["values"]["unstable_modes"] = float(len(rest.reach))
+        if not rest.reach:
+            self._kick(runs, outcome)
         for number in runs.followed:
             exponent = complex(rest.exponents[number])
             mode: dict[str, Any] = {"number": number, "frequency": exponent.imag / (2.0 * np.pi)}
@@ -92,6 +96,18 @@ class SurveyTask:
                 )
             if told["message"] and not outcome["message"]:
                 outcome["message"] = f"mode at {mode['frequency']:.5g} Hz: {told['message']}"
+
+    def _kick(self, runs: Runs, outcome: Outcome) -> None:
+        """Add the smallest kick that starts a squeal to the outcome of a quiet point."""
+        found = []
+        for number, reach in runs.rest.quiet.items():
+            told: Outcome = {"ended": "", "message": ""}
+            with failing(told, FAILED):
+                found.append(smallest_kick(runs, number, reach))
+            if told["message"] and not outcome["message"]:
+                frequency = float(runs.rest.exponents[number].imag) / (2.0 * np.pi)
+                outcome["message"] = f"kick of the mode at {frequency:.5g} Hz: {told['message']}"
+        outcome["values"] |= min((one for one in found if one), key=lambda one: float(one["kick"]), default={})
 
 
 def without_start(system: System, velocity: float | tuple[float, ...] | None) -> tuple[System, InitialEquilibrium]:

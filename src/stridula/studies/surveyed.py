@@ -29,6 +29,11 @@ OF_POINTS = {
     "equilibria": ("", "number of equilibria in words"),
     "unstable_modes": ("1", "number of modes that grow"),
     "living_modes": ("1", "number of modes that persist in their own limit cycle"),
+    "kick": ("m", "smallest displacement of a contact point in a mode from which a quiet point squeals"),
+    "kicked_mode": ("Hz", "frequency of that mode by linear theory"),
+    "kick_tone": ("Hz", "frequency of the strongest tone of that squeal"),
+    "unstable_amplitude": ("m", "amplitude of the tips in the unstable cycle between steady sliding and that squeal"),
+    "unstable_frequency": ("Hz", "frequency of the unstable cycle"),
     "message": ("", "message of a failure, empty if none"),
 }
 NUMBERS = {
@@ -47,8 +52,12 @@ NUMBERS = {
     "separated_share": ("1", "share of the time in which contacts are separated"),
     "sticking_share": ("1", "share of the time in which contacts stick"),
     "sliding_share": ("1", "share of the time in which contacts slide"),
+    "cycle_frequency": ("Hz", "frequency of the limit cycle near the end of the run"),
+    "cycle_stable": ("1", "whether that limit cycle is stable"),
+    "leading_multiplier": ("1", "size of its largest Floquet multiplier"),
     "sound_level": ("dB", "sound level LAeq a metre above the track at the louder ear, re 20 µPa"),
 }
+OF_KICKS = ("kick", "kicked_mode", "kick_tone", "unstable_amplitude", "unstable_frequency")
 WORDS = {
     "fate": f"fate of the mode: {', '.join(FATES)}",
     "regime": "regime of the contact whose normal force fluctuates most",
@@ -149,6 +158,7 @@ def _of_points(outcomes: Sequence[Outcome]) -> dict[str, Array]:
         "equilibria": np.array([one.get("equilibria", "") for one in known], dtype=object),
         "unstable_modes": np.array([one.get("unstable_modes", np.nan) for one in known], dtype=float),
         "living_modes": np.array(living, dtype=float),
+        **{name: np.array([one.get(name, np.nan) for one in known], dtype=float) for name in OF_KICKS},
         "message": np.array([outcome["message"] for outcome in outcomes], dtype=object),
     }
 

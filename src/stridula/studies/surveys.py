@@ -10,7 +10,7 @@ from typing import Any
 
 import xarray as xr
 
-from ..checks import ArgumentError, by_key, finite, one_or_each, positive, within
+from ..checks import ArgumentError, by_key, count, finite, instance, one_or_each, positive, within
 from ..scenarios.quantities import quantity
 from ..version import __version__
 from .computed import Plan, Watcher, check_options, computed
@@ -36,6 +36,8 @@ def squeal_survey(
     resolution: float = 0.1,
     highest: float | str | None = None,
     velocity: float | Sequence[float] | None = None,
+    cycles: bool = True,
+    kicks: int = 1,
     sample_rate: float | str | None = None,
     out: str | Path | None = None,
     workers: int | None = None,
@@ -47,9 +49,9 @@ def squeal_survey(
 
     At each point linear theory finds the equilibrium and its complex modes, as `sliding_stability` does at the start,
     with the contact points of the loaded system. For each growing mode a run starts in this equilibrium, perturbed by
-    the mode, and lasts until its limit cycle is steady. A run without the mode, from the same start, is subtracted to
-    measure growth. Starts defined by the scenario are ignored, except for statuses and slip velocity of its initial
-    equilibrium.
+    the mode, and lasts until its limit cycle is found by `limit_cycle` or steady. A run without the mode, from the same
+    start, is subtracted to measure growth. Where no mode grows, the smallest kick that starts a squeal is searched.
+    Starts defined by the scenario are ignored, except for statuses and slip velocity of its initial equilibrium.
 
     Points are computed and kept as those of a `sweep`; each is a separate part.
 
@@ -76,6 +78,13 @@ def squeal_survey(
         Modes above this frequency [Hz] are counted, but not simulated.
     velocity : float or sequence of float, optional
         Slip velocity where nothing prescribes it [m/s], as for `sliding_stability`.
+    cycles : bool, optional
+        Whether limit cycles at the ends of runs are searched directly. Where none is found, or an unstable one or one
+        of another size, the run goes on until it is steady. Runs of a given `duration` are not shortened.
+    kicks : int, optional
+        Number of decaying modes, those that decay least in a period first, from which a squeal is searched where no
+        mode grows: runs begin with a quarter of the reach of the mode, and with more until one squeals, up to eight
+        times the reach; then the smallest kick is found to 1 %. 0 for none.
     sample_rate : float or str, optional
         Samples per second recorded [Hz]; by default that of the scenario, or fewer if enough for the highest mode and
         there is no sound.
@@ -96,9 +105,13 @@ def squeal_survey(
     xarray.Dataset
         Over the points: ``verdict`` (stable, unstable, held, lifted off, jammed, not built, not started),
         ``equilibrium``, ``equilibria`` (their number in words, as in `sliding_stability`), ``unstable_modes``,
-        ``living_modes`` and ``message``. Over the points and ``mode``, NaN or empty where a mode does not grow:
-        ``frequency`` [Hz] and ``growth_rate`` [1/s] by linear theory, ``seen_frequency`` and ``seen_growth_rate`` in
-        the run, ``fate``, ``regime``, levels, shares, ``sound_level`` [dB] and more; additionally over ``tone`` the
+        ``living_modes`` and ``message``; where no mode grows, ``kick`` [m], the smallest displacement of a contact
+        point in the mode at ``kicked_mode`` [Hz] from which it squeals, NaN if none was found, ``kick_tone`` [Hz] of
+        that squeal, and ``unstable_amplitude`` [m] and ``unstable_frequency`` [Hz] of the unstable cycle between it and
+        steady sliding. Over the points and ``mode``, NaN or empty where a mode does not grow: ``frequency`` [Hz] and
+        ``growth_rate`` [1/s] by linear theory, ``seen_frequency`` and ``seen_growth_rate`` in the run, ``fate``,
+        ``regime``, ``cycle_frequency`` [Hz], ``cycle_stable`` and ``leading_multiplier`` of the limit cycle near the
+        end of the run, levels, shares, ``sound_level`` [dB] and more; additionally over ``tone`` the
         tones of the limit cycle and their modes.
 
     Raises
@@ -114,12 +127,15 @@ def squeal_survey(
         If a part fails on other machines; finished parts are kept.
     """
     check_options(workers, client, watchers, progress)
+    instance("cycles", cycles, bool)
     options = Options(
         duration=None if duration is None else _positive("duration", duration, "s"),
         longest=_positive("longest", longest, "s"),
         amplitude=within("amplitude", plain_python(amplitude), 1e-6, 0.1),
         resolution=within("resolution", plain_python(resolution), 0.0, 0.5),
         highest=math.inf if highest is None else _positive("highest", highest, "Hz"),
+        cycles=cycles,
+        kicks=count("kicks", kicks, low=0),
         velocity=None if velocity is None else one_or_each("velocity", plain_python(velocity), finite),
     )
     rate = None if sample_rate is None else _positive("sample_rate", sample_rate, "Hz")

@@ -1,0 +1,105 @@
+"""Smallest kicks that start a squeal, against an independent integration of the same equations."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import stridula as st
+
+STATIC, KINETIC, CREEP, DAMPING = 1.0, 0.5, 0.5, 0.1
+
+
+def rubbed(velocity: float, damping: float = DAMPING, creep: float = CREEP) -> st.System:
+    """A block on a belt whose friction falls with speed, of unit mass, stiffness and load."""
+    block = st.PointMass(1.0)
+    law = st.ExponentialWeakening(static=STATIC, kinetic=KINETIC, velocity=creep)
+    contact = st.PointContact(block.centre, st.RigidTrack(velocity=velocity), friction=law)
+    held = [st.Spring(block.centre, stiffness=1.0), st.Dashpot(block.centre, coefficient=damping)]
+    return st.System(contact, [st.Force(block.centre, y=-1.0)], held)
+
+
+def drag(slip: float, creep: float) -> float:
+    return KINETIC + (STATIC - KINETIC) * np.exp(-slip / creep)
+
+
+def squeals(kick: float, velocity: float, damping: float, creep: float) -> bool:
+    """Return whether a motion from a kick of the decaying mode grows until the block sticks, by SciPy."""
+    slope = -(STATIC - KINETIC) / creep * np.exp(-velocity / creep)
+    growth = -0.5 * (damping + slope)
+    exponent = growth + 1j * np.sqrt(1.0 - growth**2)
+
+    def rates(_: float, state: np.ndarray) -> list[float]:
+        place, speed = state
+        return [speed, drag(velocity - speed, creep) - place - damping * speed]
+
+    def sticks(_: float, state: np.ndarray) -> float:
+        return velocity - state[1]
+
+    def rests(_: float, state: np.ndarray) -> float:
+        return np.hypot(state[0] - drag(velocity, creep), state[1]) - 0.2 * kick
+
+    sticks.terminal = rests.terminal = True
+    start = [drag(velocity, creep) + kick, (exponent * kick).real]
+    found = solve_ivp(rates, (0.0, 5000.0), start, events=(sticks, rests), rtol=1e-9, atol=1e-12)
+    assert found.status == 1
+    return bool(found.t_events[0].size)
+
+
+def threshold(*given: float) -> float:
+    low, high = 0.0, given[0]
+    while high - low > 1e-4 * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if squeals(middle, *given) else (middle, high)
+    return high
+
+
+def cases(seed: int, count: int):
+    """Yield belts a little faster than that at which sliding becomes stable."""
+    random = np.random.default_rng(seed)
+    for _ in range(count):
+        damping, creep = random.uniform(0.05, 0.2), random.uniform(0.3, 0.7)
+        critical = creep * np.log((STATIC - KINETIC) / (creep * damping))
+        yield pytest.param(critical * random.uniform(1.03, 1.2), damping, creep)
+
+
+@pytest.mark.parametrize(("velocity", "damping", "creep"), list(cases(4, 4)))
+def test_the_smallest_kick_is_that_of_an_independent_integration(velocity, damping, creep):
+    """The survey finds it to 1 %, just above, and the unstable cycle behind it."""
+
+    def turning(velocity: float) -> st.System:
+        return rubbed(velocity, damping, creep)
+
+    found = st.squeal_survey(turning, {"velocity": [velocity]}, longest=4000.0, sample_rate=20.0).squeeze()
+    known = threshold(velocity, damping, creep)
+    assert found.verdict.item() == "stable"
+    assert 0.999 * known <= float(found.kick) <= 1.012 * known
+    # Negative control: 5 % more damping.
+    other = threshold(velocity, 1.05 * damping, creep)
+    assert abs(other / known - 1.0) > 0.02
+    cycle = st.limit_cycle(
+        turning(velocity), st.InitialEquilibrium(mode="most unstable", amplitude=float(found.kick)), settle=3
+    )
+    assert not bool(cycle.stable)
+    assert float(found.unstable_frequency) == pytest.approx(float(cycle.frequency), rel=1e-6)
+    # Samples are a step apart, at other phases.
+    assert float(found.unstable_amplitude) == pytest.approx(float(cycle.displacement_amplitude.max()), rel=2e-3)
+
+
+def test_known_unstable_cycle_of_a_weakening_law():
+    """At 1.2 m/s it has a period of 6.285167 s and goes 0.457845 m beyond steady sliding."""
+    found = st.squeal_survey(rubbed, {"velocity": [1.0, 1.2, 1.9]}, longest=3000.0, sample_rate=20.0)
+    assert found.verdict.values.tolist() == ["unstable", "stable", "stable"]
+    # Beyond the fold at 1.837 m/s nothing squeals.
+    assert np.isfinite(found.kick.values).tolist() == [False, True, False]
+    assert 1.0 / float(found.unstable_frequency[1]) == pytest.approx(6.285167, rel=1e-3)
+    assert float(found.unstable_amplitude[1]) == pytest.approx(0.457845, rel=0.04)
+    # The growing mode ends in the stick-slip cycle of known period.
+    assert 1.0 / float(found.cycle_frequency[0, 0]) == pytest.approx(6.431383, rel=1e-3)
+    assert bool(found.cycle_stable[0, 0])
+
+
+def test_no_kick_is_searched_where_none_is_asked_for():
+    found = st.squeal_survey(rubbed, {"velocity": [1.2]}, longest=100.0, kicks=0, sample_rate=20.0)
+    assert np.isnan(found.kick.item())
