@@ -86,7 +86,7 @@ _HOME = {
         "simulate",
         "simulate_many",
     ),
-    "acoustics.levels": ("equivalent_level", "sound_level", "third_octave_levels"),
+    "acoustics.levels": ("equivalent_level", "harmonic_levels", "sound_level", "third_octave_levels"),
     "acoustics.sensation": ("loudness", "loudness_over_time", "roughness", "sharpness"),
     "acoustics.listening": ("PlayableSound", "listen"),
     "acoustics.wav": ("SoundFile", "read_wav", "write_wav"),

@@ -21,6 +21,7 @@ from .acoustics import radiate as radiate
 from .acoustics import radiation_damping as radiation_damping
 from .acoustics import radiation_efficiency as radiation_efficiency
 from .acoustics.levels import equivalent_level as equivalent_level
+from .acoustics.levels import harmonic_levels as harmonic_levels
 from .acoustics.levels import sound_level as sound_level
 from .acoustics.levels import third_octave_levels as third_octave_levels
 from .acoustics.listening import PlayableSound as PlayableSound

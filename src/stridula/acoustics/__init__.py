@@ -14,6 +14,7 @@ _HOME = {
     "PlayableSound": "listening",
     "SoundFile": "wav",
     "equivalent_level": "levels",
+    "harmonic_levels": "levels",
     "listen": "listening",
     "loudness": "sensation",
     "loudness_over_time": "sensation",

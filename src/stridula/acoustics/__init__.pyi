@@ -3,6 +3,7 @@
 from .air import Air as Air
 from .bridges import Bridge as Bridge
 from .levels import equivalent_level as equivalent_level
+from .levels import harmonic_levels as harmonic_levels
 from .levels import sound_level as sound_level
 from .levels import third_octave_levels as third_octave_levels
 from .listening import PlayableSound as PlayableSound

@@ -7,7 +7,7 @@ import xarray as xr
 from scipy.fft import next_fast_len, rfft, rfftfreq
 
 from ..arrays import Array
-from ..checks import ArgumentError, choice, positive
+from ..checks import ArgumentError, choice, count, positive
 from .pressures import channels, check_length, check_rate, of_listeners
 from .weighting import TIME_CONSTANTS, a_weighted, time_weighted
 
@@ -76,6 +76,49 @@ def sound_level(pressure: xr.DataArray, weighting: str = "A", response: str = "f
     name = f"L{weighting}{response[0].upper()}"
     words = {"units": "dB", "long_name": f"sound level {name} re 20 µPa"}
     return pressure.copy(data=levels).rename(name).assign_attrs(words)
+
+
+def harmonic_levels(pressure: xr.DataArray, most: int = 40) -> xr.DataArray:
+    """Return the levels of the harmonics of a periodic sound.
+
+    Parameters
+    ----------
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        One or more periods of sound pressure [Pa], as of `radiate` for a limit cycle.
+    most : int, optional
+        Most harmonics.
+
+    Returns
+    -------
+    xarray.DataArray, shape (harmonic,) or (harmonic, listener)
+        Level [dB] re 20 µPa of each, of its effective value; minus infinity where there is none. ``frequency`` [Hz] is
+        along ``harmonic``.
+
+    Raises
+    ------
+    ValueError
+        If the sound has no period, or does not last whole ones.
+    """
+    values, rate = channels(pressure)
+    period = pressure.attrs.get("period")
+    if period is None:
+        raise ArgumentError(
+            "pressure", "be the sound of a limit cycle, with its period", got="a sound without a period"
+        )
+    lasts = len(values) / (rate * float(period))
+    periods = round(lasts)
+    if periods < 1 or abs(lasts - periods) * len(values) > 0.1 * periods or len(values) % periods:
+        raise ArgumentError("pressure", "last whole periods", got=f"{lasts:.6g} of them")
+    kept = min(count("most", most), (len(values) // periods - 1) // 2)
+    amplitudes = 2.0 * np.abs(rfft(values, axis=0))[periods : (kept + 1) * periods : periods] / len(values)
+    words = {"long_name": "harmonic", "units": "1"}
+    at = xr.Variable("harmonic", np.arange(1, kept + 1), words)
+    bare = pressure.isel(time=0, drop=True).expand_dims(harmonic=at)
+    levels = bare.copy(data=decibels(0.5 * amplitudes**2).reshape(bare.shape)).rename("harmonic_level")
+    frequency = ("harmonic", np.arange(1, kept + 1) / float(period), {"units": "Hz", "long_name": "frequency"})
+    return levels.assign_coords(frequency=frequency).assign_attrs(
+        units="dB", long_name="sound pressure level of the harmonics re 20 µPa"
+    )
 
 
 def third_octave_levels(pressure: xr.DataArray, lowest: float = 25.0, highest: float = 16000.0) -> xr.DataArray:

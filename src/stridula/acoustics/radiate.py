@@ -20,6 +20,7 @@ from .bridges import Bridge, bridged_sound
 from .free_bodies import free_sound
 from .lone_tracks import lone_sound
 from .plane_sound import plane_sound
+from .steady_sound import is_cycle, steady_sound
 
 
 def radiate(
@@ -46,6 +47,9 @@ def radiate(
 
     Bodies whose motion is recorded, see `ModalMotion`, move as recorded and are not driven again.
 
+    Of a limit cycle, it is one period of the steady sound: `harmonic_levels` has the levels of its harmonics, and
+    `repeat_cycle` makes a sound of any length of it.
+
     The same holds for the tracks of a system in the plane, also under its drives, springs and dashpots. Its beams, such
     as the slider, are lines of dipoles driven again by all forces at their contacts and by the drives; a baffle that
     tracks are flush with reflects their sound. In space there is a baffle only with ``baffled=True``: plates and beams
@@ -55,7 +59,8 @@ def radiate(
     ----------
     run : xarray.Dataset
         A record, with or without probes. All its contacts press on the track: select them with
-        ``run.sel(contact=[...])``.
+        ``run.sel(contact=[...])``. Or the result of `limit_cycle`, best with ``motion=True``: bodies that are driven
+        again take their time to settle.
     track : ModalBeam, ModalPlate, System or Bridge
         Source of the sound. A track need not be the body of the run, but must reach as far as it is pressed; without
         its system, only the contacts along it press it, and notes name everything else that acts on it. For a system,
@@ -91,7 +96,7 @@ def radiate(
         again", or both. For a system they have the names of the bodies. ``fit_error`` is for each body the largest
         relative error of its sources at the frequency of a mode: in the mode's normal motion over the surface, or for
         plates as sheets in the force of the air on the mode; nan for lines of dipoles and flat surfaces in a baffle.
-        Notes state it where it is above 5 %.
+        Notes state it where it is above 5 %. ``period`` [s] is that of a limit cycle.
 
     Raises
     ------
@@ -105,8 +110,16 @@ def radiate(
         instance("baffled", baffled, bool)
     air = Air() if air is None else air
     instance("air", air, Air)
+
+    def sound_of(record: Any) -> xr.DataArray:
+        return _labelled(*_sound(track, record, listener, bodies, baffled, air, sample_rate))
+
     with show_progress(progress):
-        return _labelled(*_sound(track, run, listener, bodies, baffled, air, sample_rate))
+        if not is_cycle(run):
+            return sound_of(run)
+        if sample_rate is not None:
+            raise ArgumentError("sample_rate", "be left out for a limit cycle, whose sound has a sample at every step")
+        return steady_sound(run, sound_of)
 
 
 Sound = tuple[Array, Array, Array, dict[str, Any]]

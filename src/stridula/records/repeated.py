@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import ceil
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 import xarray as xr
@@ -15,28 +15,38 @@ from .variables import ENERGY
 GROWING = tuple(one.name for one in ENERGY if one.name not in ("kinetic_and_elastic", "ledger_residual"))
 
 
-def repeat_cycle(cycle: xr.Dataset, duration: float) -> xr.Dataset:
-    """Return the record of a limit cycle over a time, for its sound, its regime and figures of many periods.
+@overload
+def repeat_cycle(cycle: xr.Dataset, duration: float) -> xr.Dataset: ...
+
+
+@overload
+def repeat_cycle(cycle: xr.DataArray, duration: float) -> xr.DataArray: ...
+
+
+def repeat_cycle(cycle: xr.Dataset | xr.DataArray, duration: float) -> xr.Dataset | xr.DataArray:
+    """Return the record of a limit cycle, or its sound, over a time: for its regime and figures of many periods.
 
     Parameters
     ----------
-    cycle : xarray.Dataset
-        Result of `limit_cycle`.
+    cycle : xarray.Dataset or xarray.DataArray
+        Result of `limit_cycle`, or its sound by `radiate`.
     duration : float
         Time [s], rounded up to whole periods.
 
     Returns
     -------
-    xarray.Dataset
-        A record as of `simulate`, but without a state from which a run could continue; unstable cycles are repeated
-        like stable ones.
+    xarray.Dataset or xarray.DataArray
+        A record as of `simulate`, but without a state from which a run could continue, or the sound; unstable cycles
+        are repeated like stable ones.
 
     Raises
     ------
     ValueError
-        If `cycle` is not a result of `limit_cycle`, or `duration` is not above 0.
+        If `cycle` is neither a result of `limit_cycle` nor its sound, or `duration` is not above 0.
     """
-    instance("cycle", cycle, xr.Dataset)
+    instance("cycle", cycle, (xr.Dataset, xr.DataArray))
+    if isinstance(cycle, xr.DataArray):
+        return _repeated_sound(cycle, duration)
     if "period" not in cycle or "time" not in cycle.dims:
         raise ArgumentError("cycle", "be the result of limit_cycle", cycle, got=listed(map(str, cycle.variables)))
     count = max(1, ceil(positive("duration", duration) / float(cycle["period"]) - 1e-9))
@@ -50,6 +60,17 @@ def repeat_cycle(cycle: xr.Dataset, duration: float) -> xr.Dataset:
     times = ("time", first + step * np.arange(count * steps), cycle["time"].attrs)
     kept = {name: value for name, value in cycle.attrs.items() if name != "verdict"}
     return xr.Dataset(data, {**_used(coordinates, data), "time": times}, kept)
+
+
+def _repeated_sound(sound: xr.DataArray, duration: float) -> xr.DataArray:
+    """Return one period of a sound, repeated over a time."""
+    if "period" not in sound.attrs or "time" not in sound.dims:
+        raise ArgumentError("cycle", "be the sound of a limit cycle", sound, got="a sound without a period")
+    period, steps = float(sound.attrs["period"]), sound.sizes["time"]
+    count = max(1, ceil(positive("duration", duration) / period - 1e-9))
+    again = sound.isel(time=np.tile(np.arange(steps), count))
+    times = float(sound["time"][0]) + period / steps * np.arange(count * steps)
+    return again.assign_coords(time=("time", times, sound["time"].attrs))
 
 
 def _repeated(name: str, values: np.ndarray, count: int) -> np.ndarray:

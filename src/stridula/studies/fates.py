@@ -155,8 +155,7 @@ class Runs:
         start = replace(self.start, mode=number, amplitude=self.options.amplitude * reach)
         given, longest = self.options.duration, self.options.longest
         if given:
-            run = self.simulate(start, given)
-            return self._ended(run, number, self.cycle_of(run, number))
+            return self._ended(self.simulate(start, given), number, None)
         run = self.simulate(start, min(longest, self._time(number, SEARCHED, 1)))
         cycle, searched = self.cycle_of(run, number), length_of(run)
         if cycle is None or not self.is_at(cycle, run, number):

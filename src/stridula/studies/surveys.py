@@ -79,8 +79,8 @@ def squeal_survey(
     velocity : float or sequence of float, optional
         Slip velocity where nothing prescribes it [m/s], as for `sliding_stability`.
     cycles : bool, optional
-        Whether limit cycles at the ends of runs are searched directly. Where none is found, or an unstable one or one
-        of another size, the run goes on until it is steady. Runs of a given `duration` are not shortened.
+        Whether limit cycles at the ends of runs are searched directly, unless `duration` is given. Where none is found,
+        or an unstable one or one of another size, the run goes on until it is steady.
     kicks : int, optional
         Number of decaying modes, those that decay least in a period first, from which a squeal is searched where no
         mode grows: runs begin with a quarter of the reach of the mode, and with more until one squeals, up to eight
