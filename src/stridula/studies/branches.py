@@ -98,7 +98,8 @@ def follow_cycle(
     contact_solve : GaussSeidel, optional
         Settings of the simultaneous solution of several contacts.
     out : str or Path, optional
-        NetCDF file that is written after every point. A branch that has been begun in it is continued.
+        NetCDF file that is written after every point. A branch that has been begun in it is continued, also one that
+        ended at the most points, with more of them.
     progress : bool, optional
         Whether to show a bar on standard error with the points found and the value of the parameter.
 
@@ -240,7 +241,9 @@ class _Following:
         rows = [found.isel(point=k).drop_dims("event") for k in range(found.sizes["point"])]
         first = int(found.attrs["first_point"])
         self.rows = {-1.0: rows[:first][::-1], 1.0: rows[first:]}
-        self.ends = {-1.0: str(found.attrs["begins"]), 1.0: str(found.attrs["ends"])}
+        ends = {-1.0: str(found.attrs["begins"]), 1.0: str(found.attrs["ends"])}
+        # More points may be asked for now.
+        self.ends = {side: end for side, end in ends.items() if end != MOST}
         events = zip(
             found["event_kind"].values, found["event_value"].values, found["event_frequency"].values, strict=True
         )
@@ -254,6 +257,9 @@ class _Following:
         rows = self.rows.setdefault(side, [])
         if not any(self.rows.values()):
             rows.append(self._row(begun.first))
+        if len(rows) > most:
+            self.ends[side] = MOST
+            return
         points = self._points(side)
         end = ""
         try:
