@@ -27,6 +27,8 @@ from .starts import Asked, Beginning, beginning_of
 
 # Rate of departure over a period above which a motion is chaotic, and below which it is a torus.
 CHAOTIC = 0.05
+# Further searches where a motion is not chaotic, and periods from one to the next: elsewhere on a torus.
+RETRIES, LATER = 3, 25
 
 
 class NoCycle(RuntimeError):
@@ -153,14 +155,30 @@ def cycle_near(system: System, asked: Asked, tell: Tell) -> tuple[Found, bool]:
     """
     try:
         begun = beginning_of(system, asked)
-        found = closed_orbit(
-            begun.of_period, begun.vectors, begun.orbit, begun.is_driven, asked.tolerance, tell, most=asked.most
-        )
+        found = _searched(begun, asked, tell)
+        for _ in range(RETRIES if begun.is_mean and not found.is_periodic else 0):
+            if begun.of_period.counter.marched > asked.most or _departure(begun) > CHAOTIC:
+                break
+            begun = begun.later(LATER)
+            found = min(found, _searched(begun, asked, tell), key=lambda one: one.best.residual)
+            if found.is_periodic:
+                break
     except MarchEnded as error:
         raise NoCycle(f"no cycle: {error} within a period near the start") from None
     if not found.is_periodic:
         raise NoCycle(_what_was_found(begun, found))
     return found, begun.is_driven
+
+
+def _searched(begun: Beginning, asked: Asked, tell: Tell) -> Found:
+    return closed_orbit(
+        begun.of_period, begun.vectors, begun.orbit, begun.is_driven, asked.tolerance, tell, most=asked.most
+    )
+
+
+def _departure(begun: Beginning) -> float:
+    """Return the rate at which neighbours of the motion at the start depart, over a period."""
+    return departure(begun.of_period, begun.vectors, begun.reached) * begun.reached.period
 
 
 @contextmanager
@@ -192,12 +210,12 @@ def _what_was_found(begun: Beginning, found: Found) -> str:
         f"{found.residuals[0]:.2g}"
     )
     try:
-        rate = departure(begun.of_period, begun.vectors, begun.orbit)
+        rate = _departure(begun)
     except MarchEnded:
         return words
-    factor = np.exp(min(rate * best.orbit.period, 700.0))
-    if rate * best.orbit.period > CHAOTIC:
+    factor = np.exp(min(rate, 700.0))
+    if rate > CHAOTIC:
         return f"{words}; the motion at the start is chaotic: neighbours part by a factor of {factor:.2g} in a period"
-    if rate * best.orbit.period > -CHAOTIC:
+    if rate > -CHAOTIC:
         return f"{words}; the motion at the start is a torus or settles slowly: neighbours neither part nor meet"
     return f"{words}; neighbours of the motion at the start meet: let it settle for longer"

@@ -117,8 +117,8 @@ class Return:
         """Return the derivative of the state after the period in a direction of its start."""
         amount = max(PERTURBED, of_residual * self.residual) * self.size / self.vectors.norm(direction)
         state = self.vectors.state(self.orbit.vector + amount * direction, self.step, self.orbit.status)
-        passed = self.of_period.after(state, self.orbit.period)
-        return (self.vectors.vector(passed.state, self.step) - self.end) / amount
+        end = self.of_period.end(state, self.orbit.period)
+        return (self.vectors.vector(end, self.step) - self.end) / amount
 
     def mean_product(self, direction: Array) -> Array:
         """Return the same as a difference of two states as far apart as the motion goes in two steps.
@@ -129,16 +129,16 @@ class Return:
         ends = []
         for sign in (1.0, -1.0):
             vector = self.orbit.vector + sign * amount * direction
-            passed = self.of_period.after(self.vectors.state(vector, self.step, self.orbit.status), self.orbit.period)
-            ends.append(self.vectors.vector(passed.state, self.step))
+            state = self.vectors.state(vector, self.step, self.orbit.status)
+            ends.append(self.vectors.vector(self.of_period.end(state, self.orbit.period), self.step))
         return np.asarray((ends[0] - ends[1]) / (2.0 * amount))
 
     def by_period(self) -> Array:
         """Return the derivative of the state after the period with respect to the period, for the same vector."""
         longer = self.orbit.period * (1.0 + PERTURBED)
         step = longer / self.of_period.steps
-        passed = self.of_period.after(self.vectors.state(self.orbit.vector, step, self.orbit.status), longer)
-        return (self.vectors.vector(passed.state, step) - self.end) / (longer - self.orbit.period)
+        end = self.of_period.end(self.vectors.state(self.orbit.vector, step, self.orbit.status), longer)
+        return (self.vectors.vector(end, step) - self.end) / (longer - self.orbit.period)
 
     def _of_modes(self, modal: Array) -> Array:
         return self.vectors.of_modes(modal, self.step)

@@ -37,6 +37,8 @@ from .returning import Orbit
 # Periods in which a motion may come back; how much nearer it must come after more than one, unless it is as near as
 # this share of its largest distance; the same where drives prescribe the time.
 RETURNS, NEARER, NEAR, NEAR_DRIVEN = 4.3, 3.0, 0.02, 1e-3
+# Instants of an expected period at which distances are taken, where drives do not prescribe them.
+LOOKS = 48
 # Share of the expected period before which a motion does not count as back.
 SOONEST = 0.3
 # Largest residual by default.
@@ -100,16 +102,35 @@ class Beginning:
         March of a period.
     vectors : StateVectors
         States as vectors.
+    reached : Orbit
+        The motion at the end of the start.
     orbit : Orbit
-        The motion from which the search begins.
+        The motion from which the search begins: that one, or its mean over many periods.
     is_driven : bool
         Whether drives prescribe the period.
     """
 
     of_period: PeriodMap
     vectors: StateVectors
+    reached: Orbit
     orbit: Orbit
     is_driven: bool
+
+    @property
+    def is_mean(self) -> bool:
+        """Whether the search begins at a mean."""
+        return self.orbit is not self.reached
+
+    def later(self, periods: int) -> Beginning:
+        """Return the beginning of a search from the mean of a motion some periods later.
+
+        Raises
+        ------
+        MarchEnded
+            If a march ends.
+        """
+        reached = _later(self.of_period, self.vectors, self.reached, periods)
+        return replace(self, reached=reached, orbit=repeating(self.of_period, self.vectors, reached, self.is_driven))
 
 
 @dataclass(frozen=True)
@@ -174,11 +195,11 @@ def beginning_of(system: System, asked: Asked) -> Beginning:
     if not isinstance(start, xr.Dataset) and not settle:
         # A start has no past, which contacts carry; the motion that drives prescribe needs a whole period.
         orbit = _later(of_period, vectors, orbit, 1 if driven else PAST / steps)
-    orbit = _later(of_period, vectors, orbit, settle or 0)
+    reached = orbit = _later(of_period, vectors, orbit, settle or 0)
     if isinstance(start, xr.Dataset) and "period" not in start:
-        orbit = grown(of_period, vectors, orbit) if driven is None else orbit
-        orbit = repeating(of_period, vectors, orbit, driven is not None)
-    return Beginning(of_period, vectors, orbit, driven is not None)
+        reached = grown(of_period, vectors, orbit) if driven is None else orbit
+        orbit = repeating(of_period, vectors, reached, driven is not None)
+    return Beginning(of_period, vectors, reached, orbit, driven is not None)
 
 
 def _started(system: System, start: InitialEquilibrium) -> System:
@@ -280,9 +301,10 @@ def _returned(flat: Assembly, settings: Settings, motion: _Motion, period: float
     vectors = StateVectors(flat, period)
     if driven is not None:
         motion = _in_steps(flat, vectors, motion, driven / ceil(driven / motion.step))
-    steps = ceil(RETURNS * period / motion.step)
-    distances = np.array(list(_distances(flat, settings, motion, vectors, steps)))
-    times = motion.step * np.arange(1, steps + 1)
+    every = 1 if driven is not None else max(1, round(period / motion.step) // LOOKS)
+    looks = ceil(RETURNS * period / (every * motion.step))
+    distances = np.array(list(_distances(flat, settings, motion, vectors, looks, every)))
+    times = every * motion.step * np.arange(1, looks + 1)
     if driven is not None:
         each = round(driven / motion.step)
         near = distances[each - 1 :: each]
@@ -291,11 +313,11 @@ def _returned(flat: Assembly, settings: Settings, motion: _Motion, period: float
     back = 1 + np.flatnonzero((first[:-1] <= 0.0) & (first[1:] > 0.0) & (times[1:-1] > SOONEST * period))
     if not back.size:
         return period
-    # Each lowest distance, by a parabola through three steps.
+    # Each lowest distance, by a parabola through three of them.
     shift = -0.5 * (first[back - 1] + first[back]) / second[back - 1]
     lowest = np.sqrt(np.maximum(distances[back] ** 2 - 0.5 * second[back - 1] * shift**2, 0.0))
     chosen = np.argmax(lowest <= max(NEARER * lowest.min(), NEAR * distances.max()))
-    return float(times[back[chosen]] + shift[chosen] * motion.step)
+    return float(times[back[chosen]] + shift[chosen] * every * motion.step)
 
 
 def _in_steps(flat: Assembly, vectors: StateVectors, motion: _Motion, step: float) -> _Motion:
@@ -306,15 +328,15 @@ def _in_steps(flat: Assembly, vectors: StateVectors, motion: _Motion, step: floa
 
 
 def _distances(
-    flat: Assembly, settings: Settings, motion: _Motion, vectors: StateVectors, steps: int
+    flat: Assembly, settings: Settings, motion: _Motion, vectors: StateVectors, looks: int, every: int
 ) -> Iterator[float]:
-    """Yield the distance of a motion from its state after each step."""
+    """Yield the distance of a motion from its state after every so many steps."""
     begun = carried_on(flat, motion.state, flat.motion(np.array([motion.time]), motion.step)[0] - motion.imposed)
     march, imposed = _march(_since(flat, motion.time), settings, begun, motion.step)
     origin = begun.modal.copy()
-    for number in range(steps):
-        chunk = march.advance([imposed.on(number, 1)], 1)[0]
-        if not chunk.completed:
+    for number in range(looks):
+        chunk = march.advance([imposed.on(number * every, every)], every)[0]
+        if chunk.completed < every:
             raise MarchEnded("the record cannot be continued")
         yield vectors.norm(vectors.of_modes(march.states[0].modal - origin, motion.step))
 

@@ -15,7 +15,7 @@ from ..lowering.blocks import blocks_of
 from ..lowering.schemes import Scheme
 from ..records.state import State
 from .contact_solve import GaussSeidel
-from .marches import Impositions, March
+from .marches import Chunk, Excitation, Impositions, March
 from .stops import ENDED, WHAT
 
 # Columns of the place of a tip on its track, and of the material that it has passed, along each tangent.
@@ -67,6 +67,41 @@ class Counter:
 
 
 @dataclass(frozen=True)
+class _Prepared:
+    """A march at one step, with the motions that are imposed in its ranges of steps.
+
+    Attributes
+    ----------
+    march : March
+        The march.
+    imposed : Impositions
+        Imposed motions.
+    ranges : dict
+        Those of ranges of steps that have been marched, by their first step and their number.
+    """
+
+    march: March
+    imposed: Impositions
+    ranges: dict[tuple[int, int], Excitation] = field(default_factory=dict)
+
+    def advance(self, first: int, count: int) -> Chunk:
+        """March some steps.
+
+        Raises
+        ------
+        MarchEnded
+            If it is not finite, or if the forces of its contacts are not found.
+        """
+        if (first, count) not in self.ranges:
+            self.ranges[first, count] = self.imposed.on(first, count)
+        chunk = self.march.advance([self.ranges[first, count]], count)[0]
+        if chunk.completed < count:
+            word = ENDED[chunk.ended]
+            raise MarchEnded(WHAT.get(word, word))
+        return chunk
+
+
+@dataclass(frozen=True)
 class PeriodMap:
     """The march of a system over a period of a fixed number of steps, whose length follows the period.
 
@@ -94,7 +129,21 @@ class PeriodMap:
     steps: int
     first_step: int = 0
     counter: Counter = field(default_factory=Counter)
-    kept: dict[float, tuple[March, Impositions]] = field(default_factory=dict)
+    kept: dict[float, _Prepared] = field(default_factory=dict)
+
+    def end(self, state: State, period: float) -> State:
+        """Return the state a period [s] later, as in `after`.
+
+        Raises
+        ------
+        MarchEnded
+            As there.
+        """
+        step = period / self.steps
+        prepared = self._prepared(state, step)
+        self.counter.marched += 1.0
+        prepared.advance(self.first_step, self.steps)
+        return carried_on(self.arrays, prepared.march.states[0], self._back(step, self.steps))
 
     def after(self, state: State, period: float, steps: int | None = None) -> Passed:
         """Return the motion a period [s] later, or after some steps of it.
@@ -105,40 +154,39 @@ class PeriodMap:
             If it is not finite, or if the forces of its contacts are not found.
         """
         step, steps = period / self.steps, self.steps if steps is None else steps
-        march, imposed = self._march(_without_energies(state), step)
+        prepared = self._prepared(state, step)
         self.counter.marched += steps / self.steps
         ends = sorted({*(np.arange(1, INSTANTS + 1) * steps // INSTANTS).tolist(), steps - 1} - {0})
-        states, sizes, rubbed, first = [march.states[0]], [], [], 0
+        states, sizes, rubbed, first = [prepared.march.states[0]], [], [], 0
         for end in ends:
-            count = end - first
-            chunk = march.advance([imposed.on(self.first_step + first, count)], count)[0]
-            if chunk.completed < count:
-                word = ENDED[chunk.ended]
-                raise MarchEnded(WHAT.get(word, word))
+            chunk = prepared.advance(self.first_step + first, end - first)
             sizes.append(np.abs(chunk.contacts[:, :, LAW_STATES]).max(axis=0))
             slips, forces = chunk.contacts[:, :, at.SLIP_VELOCITY], np.abs(chunk.contacts[:, :, at.TANGENTIAL_FORCE])
             sticking = chunk.contacts[:, :, at.STICKING]
             rubbed.append([-slips.min(axis=0), slips.max(axis=0), sticking.max(axis=0), forces.max(axis=0)])
-            states.append(march.states[0])
+            states.append(prepared.march.states[0])
             first = end
-        back = -travel(self.arrays, self.first_step * step, (self.first_step + steps) * step, step)
+        back = self._back(step, steps)
         before, last = (carried_on(self.arrays, one, back) for one in states[-2:])
         backwards, forwards, sticking, forces = np.max(rubbed, axis=0) > 0.0
         stops = bool((forces & (sticking | (backwards & forwards))).any())
         return Passed(last, before, np.array([one.modal for one in states[1:]]), np.max(sizes, axis=0), stops)
 
-    def _march(self, state: State, step: float) -> tuple[March, Impositions]:
-        """Return the march from a state, and the motions imposed; those of the last step are used again."""
+    def _back(self, step: float, steps: int) -> Array:
+        """Return the motion [m] that carries contacts back over some steps, shape (contacts, motions)."""
+        return -travel(self.arrays, self.first_step * step, (self.first_step + steps) * step, step)
+
+    def _prepared(self, state: State, step: float) -> _Prepared:
+        """Return the march from a state; that of the last step is used again."""
+        state = State(state.modal, state.remainder, state.carried, np.zeros_like(state.energies))
         if step in self.kept:
-            march, imposed = self.kept[step]
-            march.put([state])
-            return march, imposed
+            self.kept[step].march.put([state])
+            return self.kept[step]
         blocks = blocks_of(self.arrays, self.scheme, step)
         march = March([blocks], [state], step, 1, self.solve)
-        imposed = Impositions(self.arrays, blocks, step)
         self.kept.clear()
-        self.kept[step] = march, imposed
-        return march, imposed
+        self.kept[step] = _Prepared(march, Impositions(self.arrays, blocks, step))
+        return self.kept[step]
 
 
 def travel(arrays: Assembly, begin: float, end: float, step: float) -> Array:
@@ -170,7 +218,3 @@ def carried_on(arrays: Assembly, state: State, travelled: Array) -> State:
         for values in state.modal:
             values += body.turned(values, angle * body.orders)
     return state
-
-
-def _without_energies(state: State) -> State:
-    return State(state.modal, state.remainder, state.carried, np.zeros_like(state.energies))
