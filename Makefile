@@ -24,7 +24,7 @@ MESHES := tests/unit/test_block_lanczos.py tests/unit/test_sparse_bodies.py test
 help:
 	@echo "make paper        run every case of the paper into results/paper (sets itself up)"
 	@echo "make verify       run every case whose answer is known into results/verify; fails if one falls short"
-	@echo "make peers        the same systems in Siconos and here; needs Debian's python3-siconos, skipped without"
+	@echo "make peers        the same systems in Siconos and here, cycles in pyHarm and here; each is skipped where it is not installed"
 	@echo "make test         lint, types, layers and tests (sets itself up)"
 	@echo "make examples     all code and commands of the documentation, all examples, the short form of every benchmark"
 	@echo "make smoke        a part of the tests, for other systems and Pythons"
@@ -56,6 +56,7 @@ verify: .venv/installed-all
 peers: .venv/installed-all
 	$(BIN)/python benchmarks/against_siconos.py
 	$(BIN)/python benchmarks/cones.py
+	$(BIN)/python benchmarks/against_pyharm.py
 
 lint: .venv/installed-dev
 	$(BIN)/ruff format --check .

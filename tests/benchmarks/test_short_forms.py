@@ -22,8 +22,8 @@ FOLDER = Path(__file__).resolve().parents[2] / "benchmarks"
 BENCHMARKS = sorted(
     path for path in FOLDER.glob("*.py") if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
 )
-# Siconos runs under another Python without the package; the suite repeats all sections.
-APART = ("siconos_march.py", "siconos_cones.py", "siconos_faces.py", "suite.py")
+# Siconos and pyHarm run under another Python without the package; the suite repeats all sections.
+APART = ("siconos_march.py", "siconos_cones.py", "siconos_faces.py", "pyharm_cycles.py", "suite.py")
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -138,6 +138,30 @@ def test_a_brake_that_sticks_agrees_with_c_and_another_c_is_refused(copied, monk
             agree(path)
         assert "\n" not in stop.value.code
         shutil.copy(FOLDER / "brake.c", path)
+
+
+def test_cycles_with_more_friction_do_not_agree_with_pyharm(monkeypatch, capsys):
+    """Each set misses with 5 % more friction on one side; without the peer this is skipped."""
+    monkeypatch.setattr(sys, "argv", ["", "--short"])
+    monkeypatch.syspath_prepend(FOLDER)
+    against = import_module("against_pyharm")
+    if not against.installed():
+        pytest.skip(f"no pyHarm in {against.PEER}")
+    assert against.main(against.SEED, 0.05) == 1
+    _, _, *lines = capsys.readouterr().out.splitlines()
+    sets = lines[: 2 * against.EACH]
+    assert all("MISSES" in line for line in sets)
+
+
+def test_a_missing_pyharm_is_told(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["", "--short"])
+    monkeypatch.syspath_prepend(FOLDER)
+    against = import_module("against_pyharm")
+    monkeypatch.setattr(against, "PEER", "no-such-python")
+    assert against.main(against.SEED, 0.0) == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith("skipped: no pyHarm in no-such-python, nothing was compared")
+    assert "pip install pyharm-os" in printed
 
 
 WRONG_SIDES = {
