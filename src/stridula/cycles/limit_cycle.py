@@ -27,8 +27,6 @@ from .starts import Asked, Beginning, beginning_of
 
 # Rate of departure over a period above which a motion is chaotic, and below which it is a torus.
 CHAOTIC = 0.05
-# Further searches where a motion is not chaotic, and periods from one to the next: elsewhere on a torus.
-RETRIES, LATER = 3, 25
 
 
 class NoCycle(RuntimeError):
@@ -155,30 +153,14 @@ def cycle_near(system: System, asked: Asked, tell: Tell) -> tuple[Found, bool]:
     """
     try:
         begun = beginning_of(system, asked)
-        found = _searched(begun, asked, tell)
-        for _ in range(RETRIES if begun.is_mean and not found.is_periodic else 0):
-            if begun.of_period.counter.marched > asked.most or _departure(begun) > CHAOTIC:
-                break
-            begun = begun.later(LATER)
-            found = min(found, _searched(begun, asked, tell), key=lambda one: one.best.residual)
-            if found.is_periodic:
-                break
+        found = closed_orbit(
+            begun.of_period, begun.vectors, begun.orbit, begun.is_driven, asked.tolerance, tell, most=asked.most
+        )
     except MarchEnded as error:
         raise NoCycle(f"no cycle: {error} within a period near the start") from None
     if not found.is_periodic:
         raise NoCycle(_what_was_found(begun, found))
     return found, begun.is_driven
-
-
-def _searched(begun: Beginning, asked: Asked, tell: Tell) -> Found:
-    return closed_orbit(
-        begun.of_period, begun.vectors, begun.orbit, begun.is_driven, asked.tolerance, tell, most=asked.most
-    )
-
-
-def _departure(begun: Beginning) -> float:
-    """Return the rate at which neighbours of the motion at the start depart, over a period."""
-    return departure(begun.of_period, begun.vectors, begun.reached) * begun.reached.period
 
 
 @contextmanager
@@ -210,7 +192,7 @@ def _what_was_found(begun: Beginning, found: Found) -> str:
         f"{found.residuals[0]:.2g}"
     )
     try:
-        rate = _departure(begun)
+        rate = departure(begun.of_period, begun.vectors, begun.orbit) * begun.orbit.period
     except MarchEnded:
         return words
     factor = np.exp(min(rate, 700.0))

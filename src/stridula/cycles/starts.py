@@ -102,35 +102,16 @@ class Beginning:
         March of a period.
     vectors : StateVectors
         States as vectors.
-    reached : Orbit
-        The motion at the end of the start.
     orbit : Orbit
-        The motion from which the search begins: that one, or its mean over many periods.
+        The motion from which the search begins.
     is_driven : bool
         Whether drives prescribe the period.
     """
 
     of_period: PeriodMap
     vectors: StateVectors
-    reached: Orbit
     orbit: Orbit
     is_driven: bool
-
-    @property
-    def is_mean(self) -> bool:
-        """Whether the search begins at a mean."""
-        return self.orbit is not self.reached
-
-    def later(self, periods: int) -> Beginning:
-        """Return the beginning of a search from the mean of a motion some periods later.
-
-        Raises
-        ------
-        MarchEnded
-            If a march ends.
-        """
-        reached = _later(self.of_period, self.vectors, self.reached, periods)
-        return replace(self, reached=reached, orbit=repeating(self.of_period, self.vectors, reached, self.is_driven))
 
 
 @dataclass(frozen=True)
@@ -195,11 +176,11 @@ def beginning_of(system: System, asked: Asked) -> Beginning:
     if not isinstance(start, xr.Dataset) and not settle:
         # A start has no past, which contacts carry; the motion that drives prescribe needs a whole period.
         orbit = _later(of_period, vectors, orbit, 1 if driven else PAST / steps)
-    reached = orbit = _later(of_period, vectors, orbit, settle or 0)
+    orbit = _later(of_period, vectors, orbit, settle or 0)
     if isinstance(start, xr.Dataset) and "period" not in start:
-        reached = grown(of_period, vectors, orbit) if driven is None else orbit
-        orbit = repeating(of_period, vectors, reached, driven is not None)
-    return Beginning(of_period, vectors, reached, orbit, driven is not None)
+        orbit = grown(of_period, vectors, orbit) if driven is None else orbit
+        orbit = repeating(of_period, vectors, orbit, driven is not None)
+    return Beginning(of_period, vectors, orbit, driven is not None)
 
 
 def _started(system: System, start: InitialEquilibrium) -> System:
