@@ -78,7 +78,9 @@ def equilibrium_at_start(system: System, asked: InitialEquilibrium) -> Equilibri
     return find_equilibrium(structure, given_velocity(asked.velocity, structure, status), status)
 
 
-def modes_at_rest(system: System, asked: InitialEquilibrium, quiet: int = 0, highest: float = np.inf) -> ModesAtRest:
+def modes_at_rest(
+    system: System, asked: InitialEquilibrium, quiet: int = 0, highest: float = np.inf, least: float = 0.0
+) -> ModesAtRest:
     """Return the modes about the initial equilibrium of a run, numbered as in `InitialEquilibrium`.
 
     Parameters
@@ -91,6 +93,8 @@ def modes_at_rest(system: System, asked: InitialEquilibrium, quiet: int = 0, hig
         Number of decaying modes whose reach is returned.
     highest : float, optional
         Highest angular frequency of these [rad/s].
+    least : float, optional
+        Rate at which these decay at least [1/s].
 
     Raises
     ------
@@ -103,9 +107,9 @@ def modes_at_rest(system: System, asked: InitialEquilibrium, quiet: int = 0, hig
     grows = np.flatnonzero(found.values.real > round_off(structure)).tolist()
     reach = {number: _reach(whole, structure, at, motion, found, number) for number in grows}
     vibrates = (found.values.imag > 0.0) & (found.values.imag <= highest)
-    decays = np.flatnonzero(vibrates & (found.values.real < -round_off(structure)))
-    least = decays[np.argsort(-found.values.real[decays] / found.values.imag[decays], kind="stable")].tolist()
-    reaches = ((number, _reach(whole, structure, at, motion, found, number)) for number in least)
+    decays = np.flatnonzero(vibrates & (found.values.real < -max(least, round_off(structure))))
+    ordered = decays[np.argsort(-found.values.real[decays] / found.values.imag[decays], kind="stable")].tolist()
+    reaches = ((number, _reach(whole, structure, at, motion, found, number)) for number in ordered)
     kept = dict(islice(((number, one) for number, one in reaches if 0.0 < one < np.inf), quiet))
     return ModesAtRest(found.values, round_off(structure), reach, kept, at.normal_force, at.slip_velocity)
 

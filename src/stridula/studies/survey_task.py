@@ -14,7 +14,7 @@ from ..linear.reach import equilibrium_at_start, modes_at_rest
 from ..linear.structure import SLIDING
 from ..scenarios.load import Scenario
 from ..system import System
-from .fates import FAILED, Options, Runs, fate_of
+from .fates import FAILED, SETTLING, Options, Runs, fate_of
 from .kicks import smallest_kick
 from .sources import Source
 from .task import NOT_BUILT, NOT_STARTED, Outcome, failing
@@ -75,7 +75,8 @@ class SurveyTask:
             return
         start = replace(start, status=at.status)
         highest = 2.0 * np.pi * self.options.highest
-        rest = modes_at_rest(system, start, self.options.kicks, highest)
+        # Whether a mode dies away is only seen of those that have time for it.
+        rest = modes_at_rest(system, start, self.options.kicks, highest, SETTLING / self.options.longest)
         runs = Runs(replace(scenario, system=system), start, rest, self.options, watch)
         outcome["ended"] = UNSTABLE if rest.reach else STABLE
         outcome["values"]["unstable_modes"] = float(len(rest.reach))

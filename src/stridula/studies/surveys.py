@@ -83,8 +83,9 @@ def squeal_survey(
         or an unstable one or one of another size, the run goes on until it is steady.
     kicks : int, optional
         Number of decaying modes, those that decay least in a period first, from which a squeal is searched where no
-        mode grows: runs begin with a quarter of the reach of the mode, and with more until one squeals, up to eight
-        times the reach; then the smallest kick is found to 1 %. 0 for none.
+        mode grows, among those that decay by a factor of 150 within `longest`: runs begin with a quarter of the reach
+        of the mode, and with more until one squeals, up to eight times the reach; then the smallest kick is found to 1
+        %. 0 for none.
     sample_rate : float or str, optional
         Samples per second recorded [Hz]; by default that of the scenario, or fewer if enough for the highest mode and
         there is no sound.
