@@ -95,8 +95,8 @@ class _Kicks:
         return float(growth[growth < -self.runs.rest.round_off].max())
 
     @property
-    def _first(self) -> float:
-        """Time of a run before its motion is looked at [s]."""
+    def settling(self) -> float:
+        """Time of a run before its motion may count as lasting [s]."""
         settles = SETTLING / abs(self.exponent.real)
         return min(self.runs.options.longest, max(settles, 2.0 * self.runs.window_of(self.number)))
 
@@ -107,11 +107,13 @@ class _Kicks:
         """Return the run after a kick if it squeals, None if its motion dies away."""
         runs, number, start = self.runs, self.number, self._start(amplitude)
         longest = runs.options.longest
-        run = runs.simulate(start, self._first)
+        run = runs.simulate(start, min(longest, 2.0 * runs.window_of(number)))
         while not self._dies(run):
-            before, after = runs.swings(run, number)
-            is_steady = abs(np.log(after / before)) < np.log(STEADY)
-            longer = run if is_steady else runs.longer(run, start, min(length_of(run), longest - length_of(run)))
+            (before, after), lasted = runs.swings(run, number), length_of(run)
+            has_settled = lasted > 0.999 * self.settling
+            is_steady = has_settled and abs(np.log(after / before)) < np.log(STEADY)
+            wanted = min(longest, 2.0 * lasted if has_settled else self.settling)
+            longer = run if is_steady else runs.longer(run, start, wanted - lasted)
             if longer is run:
                 return run if run.attrs["ended"] == "finished" and after * FADING > before else None
             run = longer
@@ -141,7 +143,7 @@ class _Kicks:
     def _unstable(self, low: float, high: float) -> dict[str, Any]:
         """Return frequency and amplitude of the unstable cycle between two kicks, nothing if none is found."""
         runs = self.runs
-        dying, squealing = (runs.simulate(self._start(one), self._first) for one in (low, high))
+        dying, squealing = (runs.simulate(self._start(one), self.settling) for one in (low, high))
         periods = self._together(relative(dying, runs.rest), relative(squealing, runs.rest), dying)
         if periods < FEWEST:
             return {}
