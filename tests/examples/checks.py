@@ -115,6 +115,7 @@ def check_surveys(names: Mapping[str, Any], printed: str) -> None:
     this = names["this"]
     assert float(this.seen_growth_rate) == pytest.approx(float(this.growth_rate), rel=0.03)
     assert names["found"].verdict.sel(friction=0.6, angle=-60.0) == "stable"
+    np.testing.assert_allclose(names["kicked"].kick.values, [0.46, 1.33, np.nan], rtol=0.01)
 
 
 def check_cycles(names: Mapping[str, Any], printed: str) -> None:
