@@ -38,7 +38,7 @@ from .returning import Orbit
 # this share of its largest distance; the same where drives prescribe the time.
 RETURNS, NEARER, NEAR, NEAR_DRIVEN = 4.3, 3.0, 0.02, 1e-3
 # Instants of an expected period at which distances are taken, where drives do not prescribe them.
-LOOKS = 48
+LOOKS = 480
 # Share of the expected period before which a motion does not count as back.
 SOONEST = 0.3
 # Largest residual by default.
