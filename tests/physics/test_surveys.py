@@ -96,7 +96,7 @@ def test_a_run_that_leaves_its_track_is_reported():
 def runs_of(system: st.System, amplitude: float) -> Runs:
     bare, _ = without_start(system, None)
     scenario = Scenario("", "", bare, 1.0, st.ExactModal(), None, 1e6, ())
-    options = Options(None, 1.0, amplitude, 0.1, np.inf, None, cycles=False)
+    options = Options(None, 1.0, amplitude, 0.1, np.inf, None, cycles=False, kicks=0)
     return Runs(scenario, SLIDING, modes_at_rest(bare, SLIDING), options, lambda: None)
 
 

@@ -13,6 +13,7 @@ from ..arrays import Array
 from ..bars import show_progress
 from ..bodies import ModalBeam, ModalPlate
 from ..checks import ArgumentError, instance
+from ..records.repeated import is_cycle
 from ..records.variables import described
 from ..system import System
 from .air import Air
@@ -20,7 +21,7 @@ from .bridges import Bridge, bridged_sound
 from .free_bodies import free_sound
 from .lone_tracks import lone_sound
 from .plane_sound import plane_sound
-from .steady_sound import is_cycle, steady_sound
+from .steady_sound import steady_sound
 
 
 def radiate(

@@ -17,11 +17,6 @@ FIRST, LONGEST = 0.05, 1.6
 STEADY = 1e-4
 
 
-def is_cycle(run: Any) -> bool:
-    """Return whether a record is that of a limit cycle."""
-    return isinstance(run, xr.Dataset) and "period" in run and "multiplier" in run
-
-
 def steady_sound(cycle: xr.Dataset, sound_of: Callable[[xr.Dataset], xr.DataArray]) -> xr.DataArray:
     """Return one period of the sound of a limit cycle, marched on until it repeats.
 

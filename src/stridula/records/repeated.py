@@ -47,9 +47,9 @@ def repeat_cycle(cycle: xr.Dataset | xr.DataArray, duration: float) -> xr.Datase
     instance("cycle", cycle, (xr.Dataset, xr.DataArray))
     if isinstance(cycle, xr.DataArray):
         return _repeated_sound(cycle, duration)
-    if "period" not in cycle or "time" not in cycle.dims:
+    if not is_cycle(cycle):
         raise ArgumentError("cycle", "be the result of limit_cycle", cycle, got=listed(map(str, cycle.variables)))
-    count = max(1, ceil(positive("duration", duration) / float(cycle["period"]) - 1e-9))
+    count = _whole_periods(duration, float(cycle["period"]))
     steps, step = cycle.sizes["time"], float(cycle.attrs["step"])
     first = float(cycle["time"][0])
     data: dict[str, Any] = {}
@@ -62,12 +62,22 @@ def repeat_cycle(cycle: xr.Dataset | xr.DataArray, duration: float) -> xr.Datase
     return xr.Dataset(data, {**_used(coordinates, data), "time": times}, kept)
 
 
+def is_cycle(run: Any) -> bool:
+    """Return whether a value is the record of a limit cycle, as of `limit_cycle`."""
+    return isinstance(run, xr.Dataset) and "period" in run and "time" in run.dims
+
+
+def _whole_periods(duration: float, period: float) -> int:
+    """Return the number of periods that a time takes, rounded up."""
+    return max(1, ceil(positive("duration", duration) / period - 1e-9))
+
+
 def _repeated_sound(sound: xr.DataArray, duration: float) -> xr.DataArray:
     """Return one period of a sound, repeated over a time."""
     if "period" not in sound.attrs or "time" not in sound.dims:
         raise ArgumentError("cycle", "be the sound of a limit cycle", sound, got="a sound without a period")
     period, steps = float(sound.attrs["period"]), sound.sizes["time"]
-    count = max(1, ceil(positive("duration", duration) / period - 1e-9))
+    count = _whole_periods(duration, period)
     again = sound.isel(time=np.tile(np.arange(steps), count))
     times = float(sound["time"][0]) + period / steps * np.arange(count * steps)
     return again.assign_coords(time=("time", times, sound["time"].attrs))

@@ -78,8 +78,8 @@ class Options:
     resolution: float
     highest: float
     velocity: float | tuple[float, ...] | None
-    cycles: bool = True
-    kicks: int = 0
+    cycles: bool
+    kicks: int
 
 
 @dataclass(frozen=True)
@@ -166,7 +166,8 @@ class Runs:
                     break
                 run = longer
             if length_of(run) > searched:
-                cycle = self.cycle_of(run, number) or cycle
+                later = self.cycle_of(run, number)
+                cycle = cycle if later is None else later
         return self._ended(run, number, cycle)
 
     def longer(self, run: xr.Dataset, start: InitialEquilibrium, lasts: float) -> xr.Dataset:
