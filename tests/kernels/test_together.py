@@ -1,14 +1,18 @@
-"""Forces of many contacts under Coulomb's law, whose compliance may be singular: found, lawful, whatever the order."""
+"""Forces of many contacts, whose compliance may be singular: found, lawful, whatever the order."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+import stridula as st
+from stridula._kernels.contact.in_space import solve_in_space
 from stridula._kernels.layout import columns as at
-from stridula._kernels.layout.laws import LAW_COLUMNS, STATIC
+from stridula._kernels.layout.contact_values import BeforeInSpace, ComplianceInSpace, FreeInSpace, Law, Tangents
+from stridula._kernels.layout.laws import LAW_COLUMNS, NEW_STATE, STATIC
 from stridula.integration.contact_solve import GaussSeidel
-from stridula.integration.forces import forces_of
+from stridula.integration.forces import forces_of, solved
+from stridula.lowering.own_laws import law_of_march
 
 from .twin import faces
 
@@ -151,3 +155,84 @@ def test_contacts_that_moved_have_the_forces_of_the_plain_method(tangents):
     assert compared > 40
     assert alike >= 0.95 * compared
     assert ended > 20
+
+
+STEP = 1e-5
+# Slips of the random steps are of the order of one; the speed of one a step.
+SPEED = 1.0 / STEP
+OTHER_LAWS = {
+    "static and kinetic": st.StaticKinetic(0.3, 0.2),
+    "Stribeck": st.Stribeck(0.3, 0.2, SPEED),
+    "linear weakening": st.LinearWeakening(0.3, 0.1 / SPEED, 0.2),
+    "LuGre": st.LuGre(0.3, 0.2, SPEED, stiffness=1.0),
+    "rate and state": st.RateAndState(0.2, 0.01, 0.015, 3.0, SPEED),
+}
+
+
+def carried_under(law, step):
+    """Return what contacts carry whose friction was that of the last slip, or a share of it where they stuck."""
+    carried, slid = carried_of(step), step.status == faces.SLIDING
+    size = np.linalg.norm(step.last, axis=1)
+    way = step.last / np.where(size > 0.0, size, 1.0)[:, None]
+    stuck = np.clip(-step.force[:, 1:] / np.maximum(step.force[:, :1], 1e-9), -0.2, 0.2)
+    ratio = np.where(slid[:, None], 0.2 * way, stuck) * (step.status > 0)[:, None]
+    for k, b in enumerate(("", "_B")):
+        carried[:, getattr(at, "LAST_TANGENTIAL" + b)] = ratio[:, k] * step.force[:, 0]
+        carried[:, getattr(at, "PAST_RATIO" + b)] = 0.5 * ratio[:, k]
+        if isinstance(law, st.LuGre):
+            carried[:, getattr(at, "FRICTION_STATE" + b)] = ratio[:, k] / law.stiffness
+    if isinstance(law, st.RateAndState):
+        aged = law.slip_distance / np.maximum(size * SPEED, 1e-3 * SPEED)
+        carried[:, at.FRICTION_STATE] = np.where(step.status > 0, aged, law_of_march(law)[1][NEW_STATE])
+    return carried
+
+
+def alone(i, step, moved, force, law, carried, let_go):
+    """Return the forces of contact `i` alone under those of the others, ``(normal, -tangential)``."""
+    w = step.own(i)
+    gap, *slips = moved[i] - w @ force[i]
+    away = Tangents(*step.away[i]) if step.status[i] == faces.STICKING else Tangents(0.0, 0.0)
+    free = FreeInSpace(
+        gap, Tangents(*slips), away, ComplianceInSpace(*map(float, w.ravel())), let_go, Tangents(*-force[i, 1:])
+    )
+
+    def of(name):
+        return Tangents(float(carried[i, getattr(at, name)]), float(carried[i, getattr(at, name + "_B")]))
+
+    slip, earlier, states = of("LAST_SLIP"), of("EARLIER_SLIP"), of("FRICTION_STATE")
+    status, normal = float(carried[i, at.STATUS]), float(carried[i, at.LAST_NORMAL])
+    before = BeforeInSpace(status, slip, earlier, states, normal, of("LAST_TANGENTIAL"), of("PAST_RATIO"))
+    touch = solve_in_space(free, law, before, STEP)
+    return np.array([touch.normal, -touch.tangential.a, -touch.tangential.b]), int(touch.status)
+
+
+def misses_of_each(step, force, laws, carried, now):
+    """Return how far forces are from those of each contact alone, relative to the largest, and the states found."""
+    moved, misses, statuses = step.moved(force), [], set()
+    for i in range(len(force)):
+        own = Law(laws[0][i], laws[1], i, float(laws[1][i, STATIC]))
+        expected, status = alone(i, step, moved, force, own, carried, float(now[i, at.LET_GO]))
+        misses.append(np.abs(force[i] - expected).max() / force[:, 0].max())
+        statuses.add(status)
+    return max(misses), statuses
+
+
+@pytest.mark.parametrize("law", OTHER_LAWS.values(), ids=OTHER_LAWS)
+def test_contacts_under_other_laws_have_the_forces_of_each_alone(law):
+    """The forces of each contact close its gap under its law, with those of the others held."""
+    random, seen = np.random.default_rng(30), set()
+    code, row = law_of_march(law)
+    for _ in range(40):
+        step = moving(random, 2)
+        count, carried = len(step.ratio), carried_under(law, step)
+        laws, constants = (np.full(count, code), np.tile(row, (count, 1))), np.zeros((count, at.CONTACT_CONSTANTS))
+        constants[:, at.AT_REST] = row[STATIC]
+        given = laws, carried, STEP, GaussSeidel()
+        found = solved(step.free[:, 0], step.free[:, 1:], step.compliance, *given, constants=constants)
+        assert found.error <= GaussSeidel().tolerance
+        force = found.forces(2) * [1.0, -1.0, -1.0]
+        missed, statuses = misses_of_each(step, force, laws, carried, found.now)
+        assert missed < LAWFUL
+        assert misses_of_each(step, 1.001 * force, laws, carried, found.now)[0] > 1e-6
+        seen |= statuses
+    assert seen >= {0, 1, 2}

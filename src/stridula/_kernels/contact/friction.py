@@ -54,12 +54,11 @@ def sliding_ratio(law: Law, speed: Number) -> Number:
     if law.code == at.STATIC_KINETIC:
         return table[row, KINETIC]
     if law.code == at.STRIBECK:
-        return (
-            table[row, KINETIC]
-            + (table[row, STATIC] - table[row, KINETIC])
-            * math.exp(-((speed / table[row, VELOCITY]) ** table[row, EXPONENT]))
-            + table[row, VISCOUS] * speed
-        )
+        share, exponent = speed / table[row, VELOCITY], table[row, EXPONENT]
+        # A power of any exponent takes longer than all the rest.
+        powered = share if exponent == 1.0 else (share * share if exponent == 2.0 else share**exponent)
+        weakened = (table[row, STATIC] - table[row, KINETIC]) * math.exp(-powered)
+        return table[row, KINETIC] + weakened + table[row, VISCOUS] * speed
     return max(table[row, STATIC] - table[row, SLOPE] * speed, table[row, FLOOR])
 
 

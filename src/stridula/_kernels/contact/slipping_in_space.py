@@ -69,8 +69,14 @@ SINGULAR = 1e-12
 ROUNDING = 1e-9
 # Most parts of a step in which the slip turns or stops.
 MOST_TURNS = 16
+# Turn of the slip in a step that needs no further part.
+SLIGHT = 0.25
 # Trials of a search for a speed, and its relative accuracy.
 TRIALS, SETTLED = 200, 1e-15
+# Trials of such a search of which the last takes the middle of its bracket.
+UNTRUSTED = 8
+# Slip relative to the limit deflection of bristles below which what they take up is computed by its series.
+SHORT = 1e-8
 # A ratio that nothing holds; its square is still a number.
 BEYOND = 1e150
 
@@ -120,6 +126,14 @@ def undone_by(matrix: Matrix, vector: Tangents, usual: Number) -> Tangents:
 
 
 @strict_pasted
+def solved(matrix: Matrix, vector: Tangents) -> Tangents:
+    """Return the vector whose product with a regular matrix is given."""
+    a, b, c, d = matrix
+    share = 1.0 / (a * d - b * c)
+    return Tangents(share * (d * vector.a - b * vector.b), share * (a * vector.b - c * vector.a))
+
+
+@strict_pasted
 def breaks_at(ratio: Tangents, grows: Tangents, held: Number) -> Number:
     """Return the share of a step after which a ratio that grows in a straight line from below `held` reaches it."""
     square, half = along(grows, grows), along(ratio, grows)
@@ -130,39 +144,48 @@ def breaks_at(ratio: Tangents, grows: Tangents, held: Number) -> Number:
     return min(missing / (half + root) if half >= 0.0 else (root - half) / square, 1.0)
 
 
+@strict_pasted
+def next_trial(low: Number, high: Number, near: Number, trial: int) -> Number:
+    """Return the next trial of a search within a bracket: `near`, or its middle where that is outside or too slow."""
+    if low < near < high and trial % UNTRUSTED != UNTRUSTED - 1:
+        return near
+    return 0.5 * (low + high)
+
+
 @strict
 def slip_after(free: Tangents, pull: Matrix, law: Law, step: Number) -> tuple[Tangents, Tangents]:
     """Return the slip ``u = free - pull r`` under a set-valued law, and its ratio: the secant method within a bracket.
 
     The ratio of incipient sliding brings it to rest.
     """
-    needed, most = undone_by(pull, free, 1.0), sliding_ratio(law, 0.0)
-    asked = size_of(needed)
-    if asked <= most:
-        return NOTHING, needed
-    # With (speed + ratio pull) way = free, the error is the length of 1 over that of the way, less one.
-    low, low_error = 0.0, most / asked - 1.0
-    high, high_error, side = size_of(free), 1.0, 0
-    speed, ratio, way = high, most, free
-    for _ in range(TRIALS):
+    size, most = size_of(free), sliding_ratio(law, 0.0)
+    # A faster slip is not undone by any friction.
+    if size <= 2.0 * most * (pull.aa + pull.bb):
+        needed = undone_by(pull, free, 1.0)
+        if size_of(needed) <= most:
+            return NOTHING, needed
+    # With (speed + ratio pull) way = free, the error is the length of 1 over that of the way, less one. The first trial
+    # has the friction along the slip without it.
+    low, high, last, error_before = 0.0, size, 0.0, 0.0
+    drag = along(free, times(pull, free)) / (size * size)
+    speed = next_trial(low, high, size - drag * sliding_ratio(law, size / step), 0)
+    ratio, way = most, free
+    for trial in range(TRIALS):
         ratio = sliding_ratio(law, speed / step)
-        way = undone_by(stiffened(speed, ratio, pull), free, 1.0)
-        error = 1.0 / size_of(way) - 1.0
-        if abs(error) <= SETTLED:
-            break
+        way = solved(stiffened(speed, ratio, pull), free)
+        error = 1.0 / math.sqrt(way.a * way.a + way.b * way.b) - 1.0
         if error > 0.0:
-            high, high_error = speed, error
-            low_error = 0.5 * low_error if side > 0 else low_error
-            side = 1
+            high = speed
         else:
-            low, low_error = speed, error
-            high_error = 0.5 * high_error if side < 0 else high_error
-            side = -1
-        if high - low <= SETTLED * high:
+            low = speed
+        if abs(error) <= SETTLED or high - low <= SETTLED * high:
             break
-        speed = low - low_error * (high - low) / (high_error - low_error)
-        if not low < speed < high:
-            speed = 0.5 * (low + high)
+        near = speed / (1.0 + error)
+        if trial > 0 and error != error_before:
+            near = speed - error * (speed - last) / (error - error_before)
+        if near == speed:
+            break
+        last, error_before, speed = speed, error, next_trial(low, high, near, trial)
     way = direction_of(way, ALONG_A)
     return scaled(speed, way), scaled(ratio, way)
 
@@ -226,7 +249,7 @@ def part_in_space(slip: Tangents, drive: Tangents, pull: Matrix, law: Law, step:
     dragged = times(pull, way)
     rate = size_of(plus(drive, -friction, dragged))
     part = part_of(speed, rate, friction, along(way, dragged), law, step)
-    return max(1.0 / (1.0 / part + rate / speed), min(part, 1.0 / MOST_TURNS))
+    return max(1.0 / max(1.0 / part + rate / speed - SLIGHT, 1.0), min(part, 1.0 / MOST_TURNS))
 
 
 @strict
@@ -329,10 +352,12 @@ def ratio_over_step(
     gap, slips, strays, w = free.gap, free.slips, free.strays, free.w
     was, last, past = before.status, before.slip, before.past
     pull, moved = scaled_matrix(normal, of_tangents(w)), plus(slips, normal, by_normal(w))
+    if was == SLIDING:
+        return slide_on(past, moved, last, pull, law, step)
     held = holding_ratio(law, was == STICKING and free.let_go <= 0.5)
     missed = plus(moved, 1.0, strays)
     driven = undone_by(pull, missed, 1.0)
-    needed = driven if was == SLIDING else ratio_of_stick(gap, plus(slips, 1.0, strays), w, driven)
+    needed = ratio_of_stick(gap, plus(slips, 1.0, strays), w, driven)
     driven = needed if is_beyond(driven) else driven
     asked = size_of(needed)
     if was == STICKING and last.a == 0.0 and last.b == 0.0:
@@ -362,13 +387,19 @@ def ratio_over_step(
         way = direction_of(left, ALONG_A)
         more, rest, stuck = slide_through(NOTHING, 0.0, DriveInSpace(left, NOTHING), pull, way, law, step)
         return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
+    # It lands: half of its force acts before the step.
+    if free.let_go <= 0.5 and asked <= held:
+        return rests
     begun, change = scaled(0.5, plus(last, 1.0, moved)), plus(moved, -1.0, last)
-    if was != SLIDING:
-        # It lands: half of its force acts before the step.
-        if free.let_go <= 0.5 and asked <= held:
-            return rests
-        speed, way = size_of(begun), direction_of(begun, direction_of(change, ALONG_A))
-        past = scaled(0.5 * sliding_ratio(law, speed / step), way)
+    speed, way = size_of(begun), direction_of(begun, direction_of(change, ALONG_A))
+    past = scaled(0.5 * sliding_ratio(law, speed / step), way)
+    return slide_on(past, moved, last, pull, law, step)
+
+
+@strict_pasted
+def slide_on(past: Tangents, moved: Tangents, last: Tangents, pull: Matrix, law: Law, step: Number) -> tuple[Any, ...]:
+    """Do `ratio_over_step` for a contact that slides at the beginning of the step."""
+    begun, change = scaled(0.5, plus(last, 1.0, moved)), plus(moved, -1.0, last)
     slip = plus(begun, -1.0, times(pull, past))
     way = direction_of(slip, direction_of(change, ALONG_A))
     more, rest, stuck = slide_through(slip, 0.0, DriveInSpace(change, NOTHING), pull, way, law, step)
@@ -383,8 +414,10 @@ def friction_after(law: Law, state: Tangents, speed: Number, time: Number) -> Pa
     """
     table, row = law.table, law.row
     if law.code == at.LUGRE:
-        kept, share, _, _, _ = bristles_over(law, speed, time)
         limit, _ = bristle_limit(law, speed)
+        passed = speed * time / limit
+        lost = math.expm1(-passed)
+        kept, share = 1.0 + lost, -lost / passed if passed > SHORT else 1.0 - 0.5 * passed
         felt = table[row, BRISTLE_STIFFNESS] - table[row, BRISTLE_DAMPING] * speed / limit
         return felt * kept, felt * time * share + table[row, BRISTLE_DAMPING] + table[row, BRISTLE_VISCOUS]
     ratio, slope = ratio_after(law, state.a, speed, time)
@@ -398,11 +431,14 @@ def moved_at(
     """Return the slip velocity that follows from an assumed speed, and the ratios."""
     holds, drags = friction_after(law, state, speed, time)
     kept = scaled(holds, state)
-    left, stiff = plus(free, -1.0, times(pull, kept)), stiffened(1.0, drags, pull)
-    share = 1.0 / (stiff.aa * stiff.bb - stiff.ab * stiff.ba)
-    turned = Tangents(stiff.bb * left.a - stiff.ab * left.b, stiff.aa * left.b - stiff.ba * left.a)
-    velocity = scaled(share, turned)
+    velocity = solved(stiffened(1.0, drags, pull), plus(free, -1.0, times(pull, kept)))
     return velocity, plus(kept, drags, velocity)
+
+
+@strict_pasted
+def on_scale(speed: Number, scale: Number, logarithmic: bool) -> Number:
+    """Return a speed on the scale of `velocity_after`."""
+    return math.asinh(speed / scale) if logarithmic else speed / scale
 
 
 @strict
@@ -411,52 +447,38 @@ def velocity_after(
 ) -> tuple[Tangents, Tangents]:
     """Return the slip velocity ``v = free - pull r`` and the ratios of a law with internal state after some time.
 
-    At a given speed the law is linear in the velocity; the speed sought is that which results, on the scale
-    ``sinh(y)``, so that creep and sliding share one scale: the secant method within a bracket.
+    At a given speed the law is linear in the velocity; the speed sought is that which results: the secant method within
+    a bracket. The scale of rate and state is ``sinh(y)``, so that creep and sliding share one.
     """
-    scale = speed_scale(law, state.a)
-    velocity, ratio = moved_at(0.0, free, pull, law, state, time)
-    speed = size_of(velocity)
-    if speed == 0.0:
-        return velocity, ratio
+    scale, logarithmic = speed_scale(law, state.a), law.code != at.LUGRE
+    speed = guess
+    if not speed > 0.0:
+        velocity, ratio = moved_at(0.0, free, pull, law, state, time)
+        speed = size_of(velocity)
+        if speed == 0.0:
+            return velocity, ratio
     # The error is the assumed speed relative to that which results, less one.
-    low, low_error = 0.0, -1.0
-    high = math.asinh((guess if guess > 0.0 else speed) / scale)
-    high_error = 1.0
-    for _ in range(TRIALS):
-        speed = scale * math.sinh(high)
-        velocity, ratio = moved_at(speed, free, pull, law, state, time)
-        reached = size_of(velocity)
-        if reached == 0.0:
-            high_error = 1.0
-            break
-        high_error = speed / reached - 1.0
-        if high_error >= 0.0:
-            break
-        low, low_error, high = high, high_error, max(1.5 * high, math.asinh(2.0 * speed / scale))
-    side = 0
-    for _ in range(TRIALS):
-        if high_error == 0.0 or high - low <= SETTLED * high:
-            break
-        y = low - low_error * (high - low) / (high_error - low_error)
-        if not low < y < high:
-            y = 0.5 * (low + high)
-            if not low < y < high:
-                break
-        speed = scale * math.sinh(y)
+    low, high, last, error_before = 0.0, math.inf, 0.0, 0.0
+    y = on_scale(speed, scale, logarithmic)
+    for trial in range(TRIALS):
+        speed = scale * (math.sinh(y) if logarithmic else y)
         velocity, ratio = moved_at(speed, free, pull, law, state, time)
         reached = size_of(velocity)
         error = speed / reached - 1.0 if reached > 0.0 else 1.0
-        if abs(error) <= SETTLED:
-            break
-        if error > 0.0:
-            high, high_error = y, error
-            low_error = 0.5 * low_error if side > 0 else low_error
-            side = 1
+        if error >= 0.0:
+            high = y
         else:
-            low, low_error = y, error
-            high_error = 0.5 * high_error if side < 0 else high_error
-            side = -1
+            low = y
+        if abs(error) <= SETTLED or (high < math.inf and high - low <= SETTLED * high):
+            break
+        near = on_scale(reached, scale, logarithmic)
+        if trial > 0 and error != error_before:
+            near = y - error * (y - last) / (error - error_before)
+        if near == y:
+            break
+        last, error_before = y, error
+        most = min(high, on_scale(4.0 * speed, scale, logarithmic))
+        y = next_trial(low, most, near, trial) if high < math.inf or near < most else most
     return velocity, ratio
 
 

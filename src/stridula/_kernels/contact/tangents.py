@@ -68,7 +68,7 @@ def left_of(way: Tangents) -> Tangents:
 @strict_pasted
 def size_of(vector: Tangents) -> Number:
     """Return the length of a vector."""
-    return math.hypot(vector.a, vector.b)
+    return math.sqrt(vector.a * vector.a + vector.b * vector.b)
 
 
 @strict_pasted

@@ -1,11 +1,12 @@
-"""Forces of many contacts together under Coulomb's law: steps of Newton's method, on plain arrays.
+"""Forces of many contacts together: steps of Newton's method, on plain arrays.
 
 Each contact has a normal force and one or two tangential ones, with the signs with which they act on the modes,
-``(normal, -tangential)``. They are an apex, which is given, plus forces ``y`` within the cone of friction, for which
-``y = P(y - r w)``: `w` are the gap, and the slips plus a shift; `r` is a stiffness of the contact, and ``P`` the
-projection on its cone, along its axis for the normal force and within the disc of that radius for the tangential one
-(Alart & Curnier 1991). The step is semi-smooth: an open contact has no unknown; one that sticks has all its forces; one
-that slides has its normal force and, where it moves slowly, the force across the direction in which friction acts.
+``(normal, -tangential)``. Under Coulomb's law they are an apex, which is given, plus forces ``y`` within the cone of
+friction, for which ``y = P(y - r w)``: `w` are the gap, and the slips plus a shift; `r` is a stiffness of the contact,
+and ``P`` the projection on its cone, along its axis for the normal force and within the disc of that radius for the
+tangential one (Alart & Curnier 1991). The step is semi-smooth: an open contact has no unknown; one that sticks has all
+its forces; one that slides has its normal force and, where it moves slowly, the force across the direction in which
+friction acts. For contacts under other laws see `on_ways`.
 """
 
 import math
@@ -37,14 +38,18 @@ from .elimination import add_product, eliminate, substitute
     NEXT_SHARE,
 ) = range(16)
 # Numbers of a contact, at its first number.
-RATIO, STIFFNESS, GIVE, BEYOND, STATE, KEPT, FACTORISED, WAS, ENDS = range(16, 25)
+RATIO, STIFFNESS, GIVE, BEYOND, STATE, KEPT, FACTORISED, WAS, ENDS, STATUS, JAMS, BROKE, LET_GO, COUPLED = range(16, 30)
+# Of a contact under another law, for its tangents: ratio of forces, what the forces miss under the normal force, the
+# change of friction with the normal force, and the inverse of that with the slips.
+PULL, MISSED, BY_NORMAL, INVERSE_A, INVERSE_B = range(30, 35)
 # Of the run: size of the system whose factors are kept from step to step, 0 without one, and the largest friction of
 # which the direction is not an unknown in it.
-FACTORS = 25
-ROWS = 26
+FACTORS = 35
+ROWS = 36
 
-# States of a contact in a step: open, held, sliding with its normal force as unknown, sliding with two unknowns.
-OPEN, HELD, SLIDING, TURNING = range(4)
+# States of a contact in a step: open, held, sliding with its normal force as unknown, sliding with two unknowns, and
+# with friction that depends on its slips.
+OPEN, HELD, SLIDING, TURNING, WHOLE = range(5)
 # Largest friction, in units of the force that undoes the slip, of which the direction is that of the slip, not an
 # unknown: in first steps, which find the states of contacts, and in later ones.
 SWIFT, SWIFTER = 0.25, 1e-4
@@ -177,7 +182,7 @@ def settle(face: Face, least: float) -> None:
         second = rows[FORCES, n + 2] - rows[APEX, n + 2] if two else 0.0
         if state == OPEN:
             move(face, i, (-normal, -first, -second))
-        elif state > HELD:
+        elif state in (SLIDING, TURNING):
             way, aside = rows[WAY, n + 1], rows[WAY, n + 2] if two else 0.0
             pulled = rows[RATIO, n] * normal
             if state == TURNING:
@@ -199,7 +204,7 @@ def number_equations(face: Face) -> int:
         if state == OPEN:
             continue
         size = put_equation(face, size, n, 1.0, 0.0)
-        if state == HELD:
+        if state in (HELD, WHOLE):
             for k in range(n + 1, face.first[i + 1]):
                 size = put_equation(face, size, k, 1.0, 0.0)
         elif state == TURNING:
@@ -244,6 +249,30 @@ def turning_stiffness(face: Face, n: int) -> float:
     return (1.0 - kept) / (kept * face.rows[STIFFNESS, n])
 
 
+@inlined
+def undo(face: Face, n: int, row: int, friction: tuple[float, float], two: bool) -> float:
+    """Return the slip, along the tangent of a row of the inverse, that changes friction so far."""
+    slip = face.rows[row, n + 1] * friction[0]
+    if two:
+        slip += face.rows[row, n + 2] * friction[1]
+    return slip
+
+
+@called
+def put_friction(face: Face, i: int, at: int) -> None:
+    """Put friction that depends on the slips into the equations of contact `i`, from row `at` on.
+
+    The slips are those without its own forces.
+    """
+    n, own = face.first[i], face.first[i + 1] - face.first[i]
+    by_normal = face.rows[BY_NORMAL, n + 1], face.rows[BY_NORMAL, n + 2] if own > 2 else 0.0
+    for k in range(own):
+        friction = by_normal if k == 0 else (1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0)
+        for m in range(1, own):
+            slip = undo(face, n, INVERSE_A if m == 1 else INVERSE_B, friction, own > 2)
+            face.matrix[at + k, at + m] += slip - face.soft[n + k, n + m]
+
+
 @called
 def factorise(face: Face, size: int, guard: float) -> bool:
     """Set the matrix of contacts in their states, and factorise it; return whether it is regular.
@@ -259,13 +288,16 @@ def factorise(face: Face, size: int, guard: float) -> bool:
             continue
         at, mu, mean = int(rows[EQUATION, n]), rows[RATIO, n], 1.0 / rows[STIFFNESS, n]
         way, aside = rows[WAY, n + 1], rows[WAY, n + 2] if two else 0.0
-        pulled = (0.0, 0.0) if state == HELD else (mu * way, mu * aside)
+        whole = state in (HELD, WHOLE)
+        pulled = (0.0, 0.0) if whole else (mu * way, mu * aside)
         put_column(face, at, size, n, two, (1.0, pulled[0], pulled[1]))
         matrix[at, at] += rows[GIVE, n] + guard * (mean + rows[GIVE, n])
-        if state == HELD:
+        if whole:
             for k in range(1, face.first[i + 1] - n):
                 put_column(face, at + k, size, n, two, (0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0))
                 matrix[at + k, at + k] += guard * mean
+            if state == WHOLE:
+                put_friction(face, i, at)
         elif state == TURNING:
             put_column(face, at + 1, size, n, two, (0.0, -aside, way))
             matrix[at + 1, at + 1] += turning_stiffness(face, n) + guard * mean
@@ -286,6 +318,11 @@ def take_step(face: Face, size: int) -> None:
         if state == HELD:
             for k in range(1, face.first[i + 1] - n):
                 right[at + k] = -(rows[MOTIONS, n + k] + rows[SHIFT, n + k])
+        elif state == WHOLE:
+            missed = rows[MISSED, n + 1], rows[MISSED, n + 2] if two else 0.0
+            right[at + 1] = -undo(face, n, INVERSE_A, missed, two)
+            if two:
+                right[at + 2] = -undo(face, n, INVERSE_B, missed, two)
         elif state == TURNING:
             way, aside = rows[WAY, n + 1], rows[WAY, n + 2]
             slip, swerved = rows[MOTIONS, n + 1] + rows[SHIFT, n + 1], rows[MOTIONS, n + 2] + rows[SHIFT, n + 2]
@@ -299,7 +336,7 @@ def take_step(face: Face, size: int) -> None:
             continue
         at, two = int(rows[EQUATION, n]), face.first[i + 1] - n > 2
         pressed = right[at]
-        if state == HELD:
+        if state in (HELD, WHOLE):
             move(face, i, (pressed, right[at + 1], right[at + 2] if two else 0.0))
             continue
         pulled, swerved = rows[RATIO, n] * pressed, right[at + 1] if state == TURNING else 0.0

@@ -24,8 +24,8 @@ from .together import AT_ONCE, all_under_coulomb, solve_together
 
 # Sweeps before the first direct solve for the forces of the states found, and between direct solves.
 FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 1, 8
-# Sweeps after which contacts under Coulomb's law are solved together, and contacts under other laws that have broken
-# away in this step are no longer held by their static coefficient; most attempts to solve contacts together.
+# Sweeps after which contacts are solved together, and contacts under laws other than Coulomb's that have broken away in
+# this step are no longer held by their static coefficient; most attempts to solve contacts together.
 PATIENCE, ATTEMPTS = 24, 24
 # Number of contacts in space from which they are solved together at once.
 MANY = 16
@@ -232,10 +232,11 @@ def solve_closed(
 ) -> Pair:
     """Solve contacts in turn until no force changes; return the number of sweeps and the error from the changes.
 
-    Runs without any contact `touching` have no forces. The error is relative to the largest force. A direct solve helps
-    sweeps that converge slowly with unchanged states; contacts under Coulomb's law that still do not settle are solved
-    together. Under other laws a contact that was held and breaks away may have no consistent state in which it could be
-    held again: it is then let go. Results do not depend on the runs side by side: a run that is done does not change.
+    Runs without any contact `touching` have no forces. The error is relative to the largest force. Many contacts in
+    space are solved together first. A direct solve helps sweeps that converge slowly with unchanged states; contacts
+    that still do not settle are solved together. Under laws other than Coulomb's a contact that was held and breaks
+    away may have no consistent state in which it could be held again: it is then let go. Results do not depend on the
+    runs side by side: a run that is done does not change.
     Compiled once for the march and for the start.
     """
     start_from_last(space, contacts, carried, touching, sizes, runs)
@@ -245,8 +246,8 @@ def solve_closed(
     rounding = rounding_of_slips(space, carried, sizes, runs)
     made, error, before = runs.zero, choose(touching > 0.5, math.inf, runs.zero), runs.zero + math.inf
     given_up, together = runs.zero, all_under_coulomb(contacts.codes)
-    if together and sizes.space and sizes.contacts >= MANY:
-        found, made, left = solve_together(contacts, carried, sizes, (0, AT_ONCE), 1.0 - done, timing, runs)
+    if sizes.space and sizes.contacts >= MANY:
+        found, made, left = solve_together(space, contacts, carried, sizes, (0, AT_ONCE), 1.0 - done, timing, runs)
         error, done = choose(found > 0.5, left, error), choose(found > 0.5, 1.0, done)
         if everywhere(done > 0.5):
             return made, error
@@ -285,10 +286,12 @@ def solve_closed(
         if sweep + 1 == PATIENCE:
             become_late(contacts, sizes, together, runs)
         attempt = sweep + 1 - PATIENCE
-        if together and attempt % SWEEPS_PER_DIRECT_SOLVE == 0 and 0 <= attempt < ATTEMPTS * SWEEPS_PER_DIRECT_SOLVE:
+        if attempt % SWEEPS_PER_DIRECT_SOLVE == 0 and 0 <= attempt < ATTEMPTS * SWEEPS_PER_DIRECT_SOLVE:
             attempt //= SWEEPS_PER_DIRECT_SOLVE
             tried = choose(done > 0.5, runs.zero, 1.0)
-            found, _, left = solve_together(contacts, carried, sizes, (attempt, attempt + 1), tried, timing, runs)
+            found, _, left = solve_together(
+                space, contacts, carried, sizes, (attempt, attempt + 1), tried, timing, runs
+            )
             error, done = choose(found > 0.5, left, error), choose(found > 0.5, 1.0, done)
             before = runs.zero + math.inf
             if everywhere(done > 0.5):

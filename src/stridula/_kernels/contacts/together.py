@@ -1,14 +1,15 @@
-"""Step 5 for all contacts under Coulomb's law together, a run at a time: see `newton`.
+"""Step 5 for all contacts together, a run at a time: see `newton`, and `on_ways` for laws other than Coulomb's.
 
-A contact that stuck has its slip from the anchor; any other has the slip of this step with a share of the last two,
-which makes the velocity of second order (5c). Where with this share a slip would end or turn round in the step, the
-friction of the part before its end is given, an apex; the slip of the step counts for the rest (5d).
+Under Coulomb's law a contact that stuck has its slip from the anchor; any other has the slip of this step with a share
+of the last two, which makes the velocity of second order (5c). Where with this share a slip would end or turn round in
+the step, the friction of the part before its end is given, an apex; the slip of the step counts for the rest (5d).
 """
 
 import math
 from typing import NamedTuple
 
 from ..contact.exact import SLIDING, STICKING
+from ..contact.friction import set_valued
 from ..contact.pressing import share_of
 from ..contact.solves import strayed
 from ..contact.yielding import give_of, path_of, yields_of
@@ -32,13 +33,16 @@ from ..layout.rows import COMPLIANCE, DISPLACEMENT
 from .newton import (
     APEX,
     BEYOND,
+    BROKE,
     ENDS,
     FACTORS,
     FORCES,
     FREE,
     GIVE,
     HELD,
+    JAMS,
     LAST,
+    LET_GO,
     MOTIONS,
     OLD_FORCES,
     OLD_MOTIONS,
@@ -46,10 +50,12 @@ from .newton import (
     RATIO,
     SHIFT,
     STATE,
+    STATUS,
     SWIFT,
     SWIFTER,
     WAS,
     WAY,
+    WHOLE,
     Face,
     factorise,
     judge,
@@ -59,6 +65,8 @@ from .newton import (
     settle,
     take_step,
 )
+from .newton import SLIDING as SLIDES
+from .on_ways import differentiate, judge_on_way, on_way
 
 
 class Way(NamedTuple):
@@ -160,6 +168,7 @@ def put_contact(face: Face, way: Way, contacts: Contacts, carried: Array, i: int
     rows[RATIO, n] = number_of(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, one, runs)
     rows[WAS, n], rows[ENDS, n] = status, GOES_ON
     rows[GIVE, n], rows[BEYOND, n], rows[APEX, n] = 0.0, 0.0, 0.0
+    rows[BROKE, n], rows[LET_GO, n] = 0.0, number_of(now, here + at.LET_GO, one, runs)
     last = number_of(carried, base + at.LAST_NORMAL, one, runs) if was_closed else 0.0
     rows[FORCES, n] = last if way.again else number_of(now, here + at.NORMAL_NOW, one, runs)
     rows[FREE, n] = number_of(now, here + at.FREE_GAP, one, runs)
@@ -180,7 +189,8 @@ def put_tangent(face: Face, way: Way, contacts: Contacts, carried: Array, i: int
     earlier = number_of(carried, base + column(k, at.EARLIER_SLIP, at.EARLIER_SLIP_B), one, runs)
     material, anchor = column(k, at.MATERIAL, at.MATERIAL_B), column(k, at.ANCHOR, at.ANCHOR_B)
     shift = lane(strayed(carried, base, material, anchor, runs), one)
-    if way.second_order and face.first[i + 1] - n > 2 and abs(status - STICKING) > 0.5:
+    carries_on = way.second_order and contacts.codes[i] == at.COULOMB
+    if carries_on and face.first[i + 1] - n > 2 and abs(status - STICKING) > 0.5:
         shift = (6.0 * last + earlier) / 9.0
     rows[LAST, m], rows[APEX, m], rows[SHIFT, m], rows[WAY, m] = last, 0.0, shift, 0.0
 
@@ -237,7 +247,7 @@ def end_slip(face: Face, i: int) -> float:
 
 
 @called
-def find_ends(face: Face) -> int:
+def find_ends(face: Face, codes: Array) -> int:
     """Mark slips that end or turn round in this step, from the forces found with those of the last steps.
 
     Return their number. For them the slip of this step counts.
@@ -246,7 +256,7 @@ def find_ends(face: Face) -> int:
     for i in range(face.first.size - 1):
         n, own = face.first[i], face.first[i + 1] - face.first[i]
         stuck = abs(rows[WAS, n] - STICKING) < 0.5
-        if rows[ENDS, n] != GOES_ON or stuck or rows[STATE, n] == OPEN:
+        if codes[i] != at.COULOMB or rows[ENDS, n] != GOES_ON or stuck or rows[STATE, n] == OPEN:
             continue
         slid, size, forward, on = rows[WAS, n] > SLIDING - 0.5, 0.0, 0.0, 0.0
         for k in range(n + 1, n + own):
@@ -267,7 +277,14 @@ def find_ends(face: Face) -> int:
 
 @called
 def evaluate(
-    face: Face, contacts: Contacts, carried: Array, one: int, step: float, ends_move: bool, runs: Runs
+    space: bool | None,
+    face: Face,
+    contacts: Contacts,
+    carried: Array,
+    one: int,
+    step: float,
+    ends_move: bool,
+    runs: Runs,
 ) -> tuple[float, float, float]:
     """Set states, yielding and ends of slips; return the residual, the largest force, and how far ends have moved."""
     left, largest, moved, rows = 0.0, 0.0, 0.0, face.rows
@@ -276,9 +293,32 @@ def evaluate(
         soften(face, contacts, carried, i, one, step, runs)
         if ends_move and rows[ENDS, n] == ENDS_WITH_APEX:
             moved = max(moved, end_slip(face, i))
-        left += judge(face, i, rows[FACTORS, 1])
+        if contacts.codes[i] == at.COULOMB:
+            left += judge(face, i, rows[FACTORS, 1])
+        else:
+            contact = on_way(face, i, contacts, carried, one, step, runs)
+            left += judge_on_way(space, face, i, contact, rows[FACTORS, 1])
         largest = max(largest, rows[FORCES, n])
     return math.sqrt(left), largest, moved
+
+
+@called
+def differentiate_all(
+    space: bool | None, face: Face, contacts: Contacts, carried: Array, one: int, step: float, runs: Runs
+) -> None:
+    """Set how friction changes with normal force and slips of each contact for which it may matter."""
+    for i in range(face.first.size - 1):
+        state, slides_with_state = face.rows[STATE, face.first[i]], not set_valued(contacts.codes[i])
+        if state == WHOLE or (state == SLIDES and slides_with_state):
+            differentiate(space, face, i, on_way(face, i, contacts, carried, one, step, runs))
+
+
+@called
+def let_go(face: Face) -> None:
+    """Hold no contact that has broken away in this step by its static coefficient any more."""
+    for i in range(face.first.size - 1):
+        if face.rows[BROKE, face.first[i]] > 0.5:
+            face.rows[LET_GO, face.first[i]] = 1.0
 
 
 @called
@@ -320,7 +360,7 @@ def rounding_of(face: Face) -> float:
 
 @called
 def find_forces(
-    face: Face, way: Way, contacts: Contacts, carried: Array, one: int, timing: Timing, runs: Runs
+    space: bool | None, face: Face, way: Way, contacts: Contacts, carried: Array, one: int, timing: Timing, runs: Runs
 ) -> tuple[int, float]:
     """Change the forces until they are found; return the number of steps, and the residual, 0 if they are."""
     set_out(face, way.stiffness)
@@ -330,7 +370,9 @@ def find_forces(
     moved, missed, largest = 0.0, math.inf, 0.0
     for trial in range(way.steps):
         move_now = ends_move and (trial < FREELY or before <= max(FALLEN * moved, SETTLED * largest))
-        left, largest, farther = evaluate(face, contacts, carried, one, timing.step, move_now, runs)
+        if trial == STRICT:
+            let_go(face)
+        left, largest, farther = evaluate(space, face, contacts, carried, one, timing.step, move_now, runs)
         if move_now:
             moved, second, third, fourth = farther, math.inf, math.inf, math.inf
         if ends_move and trial > MOVING * way.steps and moved > SETTLED * largest:
@@ -359,7 +401,8 @@ def find_forces(
             swift = SWIFTER if trial >= STRICT or (alike and fresh) else SWIFT
             if swift != factors[1]:
                 factors[1] = swift
-                left, largest, _ = evaluate(face, contacts, carried, one, timing.step, False, runs)
+                left, largest, _ = evaluate(space, face, contacts, carried, one, timing.step, False, runs)
+            differentiate_all(space, face, contacts, carried, one, timing.step, runs)
             size = number_equations(face)
             guard = max(LEAST_GUARD, min(GUARD * missed, MOST_GUARD)) if way.guard == 0.0 else way.guard
             fresh = factorise(face, size, guard)
@@ -402,37 +445,44 @@ def accept(face: Face, contacts: Contacts, one: int, runs: Runs) -> None:
         for k in range(n, n + own):
             moved = with_lane(component(contacts.faces, k, DISPLACEMENT, runs), one, rows[MOTIONS, k])
             set_component(contacts.faces, k, DISPLACEMENT, runs, moved)
+        on_its_way = contacts.codes[i] != at.COULOMB
+        if on_its_way:
+            set_number(now, here + at.STATUS_NOW, one, rows[STATUS, n] if normal > 0.0 else 0.0, runs)
+            set_number(now, here + at.JAMMED_NOW, one, rows[JAMS, n] if normal > 0.0 else 0.0, runs)
+            set_number(now, here + at.LET_GO, one, rows[LET_GO, n], runs)
         for k in range(own - 1):
             pulled = rows[FORCES, n + 1 + k] if normal > 0.0 else 0.0
-            if status == SLIDING:
+            if status == SLIDING and not on_its_way:
                 pulled = rows[APEX, n + 1 + k] + rows[RATIO, n] * (normal - rows[APEX, n]) * rows[WAY, n + 1 + k]
             set_number(now, here + column(k, at.TANGENTIAL_NOW, at.TANGENTIAL_NOW_B), one, -pulled, runs)
 
 
 @called
 def seek(
-    face: Face, way: Way, contacts: Contacts, carried: Array, most: float, one: int, timing: Timing, runs: Runs
+    space: bool | None,
+    face: Face,
+    way: Way,
+    contacts: Contacts,
+    carried: Array,
+    one: int,
+    timing: Timing,
+    runs: Runs,
 ) -> tuple[int, float]:
-    """Seek the forces of all contacts of the run in lane `one`, with a residual of `most` at most.
-
-    Return the number of steps, -1 if there are none, and the residual.
-    """
+    """Seek the forces of all contacts of the run in lane `one`; return the number of steps, and the residual."""
     for i in range(face.first.size - 1):
         put_contact(face, way, contacts, carried, i, one, runs)
     made, missed = 0, 0.0
     for _ in range(ROUNDS):
-        steps, missed = find_forces(face, way, contacts, carried, one, timing, runs)
-        if not missed <= most:
-            return -1, missed
+        steps, missed = find_forces(space, face, way, contacts, carried, one, timing, runs)
         made += steps
-        if not way.second_order or find_ends(face) == 0:
+        if missed != 0.0 or not way.second_order or find_ends(face, contacts.codes) == 0:
             break
-    accept(face, contacts, one, runs)
     return made, missed
 
 
 @called
 def solve_together(
+    space: bool | None,
     contacts: Contacts,
     carried: Array,
     sizes: Sizes,
@@ -453,8 +503,9 @@ def solve_together(
             face = Face(soft, dense[:numbers], dense[numbers:], contacts.rows)
             for attempt in range(attempts[0], attempts[1]):
                 most = CLOSE if attempt - attempts[0] == AT_ONCE - 1 else 0.0
-                steps, missed = seek(face, WAYS[attempt % len(WAYS)], contacts, carried, most, one, timing, runs)
-                if steps >= 0:
+                steps, missed = seek(space, face, WAYS[attempt % len(WAYS)], contacts, carried, one, timing, runs)
+                if missed <= most:
+                    accept(face, contacts, one, runs)
                     found, made = with_lane(found, one, 1.0), with_lane(made, one, float(steps))
                     left = with_lane(left, one, missed)
                     break
