@@ -46,7 +46,7 @@ def sliding(law, last, past, slip, w, h, normal):
             scale, viscous = law.velocity * h, law.viscous / h
             steep = (friction - law.kinetic - viscous * speed) / scale + viscous
             part = max(0.5 / (rate / (scale + speed) + way @ pull @ way * steep + 0.5), 1 / 64)
-        part = min(max(1 / max(1 / part + rate / speed - 0.25, 1), min(part, 1 / 16)), 1 - begin)
+        part = min(max(1 / (1 / part + rate / speed), min(part, 1 / 16)), 1 - begin)
         ratios = np.zeros((2, 2))
         for stage in range(2):
             free = u + part * (INNER[stage].sum() * drive - pull @ (INNER[stage] @ ratios))

@@ -69,8 +69,6 @@ SINGULAR = 1e-12
 ROUNDING = 1e-9
 # Most parts of a step in which the slip turns or stops.
 MOST_TURNS = 16
-# Turn of the slip in a step that needs no further part.
-SLIGHT = 0.25
 # Trials of a search for a speed, and its relative accuracy.
 TRIALS, SETTLED = 200, 1e-15
 # Trials of such a search of which the last takes the middle of its bracket.
@@ -249,7 +247,7 @@ def part_in_space(slip: Tangents, drive: Tangents, pull: Matrix, law: Law, step:
     dragged = times(pull, way)
     rate = size_of(plus(drive, -friction, dragged))
     part = part_of(speed, rate, friction, along(way, dragged), law, step)
-    return max(1.0 / max(1.0 / part + rate / speed - SLIGHT, 1.0), min(part, 1.0 / MOST_TURNS))
+    return max(1.0 / (1.0 / part + rate / speed), min(part, 1.0 / MOST_TURNS))
 
 
 @strict
