@@ -34,7 +34,7 @@ def refinements() -> dict[str, dict[str, float]]:
 
 def converging() -> list[Claim]:
     """Return the claims whose measures are averaged: all but the series over friction and over load."""
-    return [claim for claim in CLAIMS if not claim.claim.startswith(("onset", "10 to 200 N"))]
+    return [claim for claim in CLAIMS if not claim.claim.startswith(("onset", "10 to 200 N", "least rise"))]
 
 
 def one_start(arguments: tuple[str, int]) -> tuple[str, list[float]]:

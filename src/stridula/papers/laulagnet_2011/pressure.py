@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,6 +18,7 @@ from ...studies.ensembles import perturbed_starts
 from .runs import Runs, median_over_starts
 
 PRESSURES = tuple(float(load) for load in np.round(np.geomspace(10.0, 200.0, 24), 1))
+LOADS = (20.0, 40.0, 80.0, 150.0)
 # Starts under each load, computed side by side.
 STARTS = 8
 
@@ -54,10 +57,9 @@ def relaxation(run: xr.Dataset) -> tuple[float, float]:
     return analysis.dominant_frequency(force, between), analysis.frequency_resolution(force, between)
 
 
-def relaxations(runs: Runs) -> list[Relaxations]:
-    """Return the relaxations under each of `PRESSURES`, computed once for a set of runs."""
-    found: list[Relaxations] = runs.once("relaxations", lambda: [_under(runs, load) for load in PRESSURES])
-    return found
+def relaxations(runs: Runs, loads: Sequence[float] = PRESSURES) -> list[Relaxations]:
+    """Return the relaxations under each of some loads [N], computed once for a set of runs."""
+    return [runs.once(f"relaxations under {load:g} N", partial(_under, runs, load)) for load in loads]
 
 
 def _under(runs: Runs, load: float) -> Relaxations:

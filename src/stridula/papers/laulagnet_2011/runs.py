@@ -21,7 +21,6 @@ from ...scenarios.load import Scenario, load_scenario
 from ...studies.ensembles import median_and_interval, perturbed_starts
 
 CASES = ("stable-sliding", "squeal", "axial-sliding", "judder", "weak-pressure", "strong-pressure")
-LOADS = (20.0, 40.0, 80.0, 150.0)
 # Number of starts of chaotic cases, for which a measure of a single run may hold by chance.
 STARTS = 16
 LADDER = tuple(np.round(np.arange(0.5, 1.501, 0.05), 2))
@@ -52,7 +51,10 @@ class Runs:
 
     def record(self, case: str) -> xr.Dataset:
         """Return the record of one of `CASES`."""
-        return self._kept(case, case)
+        if case not in self._records:
+            self.report(case)
+            self._records[case] = self.scenario(case).simulate()
+        return self._records[case]
 
     def sound(self, case: str, path: str | Path | None = None) -> xr.DataArray:
         """Return the sound of a case from its file [Pa]: two ears a metre above the track, in a baffle.
@@ -67,10 +69,6 @@ class Runs:
                 write_wav(file, pressure)
                 self._sounds[case] = read_wav(file)
         return self._sounds[case]
-
-    def under_load(self, load: float) -> xr.Dataset:
-        """Return the record of section 3.4 under a normal load [N]."""
-        return self._kept(f"pressure-{load:g}", "strong-pressure", normal_load=load)
 
     def ladder(self, case: str) -> dict[float, str]:
         """Return the ending of a case at each coefficient of friction of `LADDER`: sliding, stuck or vibrating."""
@@ -112,12 +110,6 @@ class Runs:
         other._records = {**self._records, case: record}
         other._sounds = {name: sound for name, sound in self._sounds.items() if name != case}
         return other
-
-    def _kept(self, key: str, case: str, **overrides: Any) -> xr.Dataset:
-        if key not in self._records:
-            self.report(key)
-            self._records[key] = self.scenario(case, **overrides).simulate()
-        return self._records[key]
 
 
 def median_over_starts(values: Array) -> tuple[float, list[float] | None]:
