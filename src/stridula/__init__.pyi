@@ -34,6 +34,7 @@ from .acoustics.wav import SoundFile as SoundFile
 from .acoustics.wav import read_wav as read_wav
 from .acoustics.wav import write_wav as write_wav
 from .analysis import regime as regime
+from .analysis import worn as worn
 from .analysis.mobilities import mobility as mobility
 from .analysis.record_card import RecordCard as RecordCard
 from .analysis.record_card import card as card
@@ -72,6 +73,8 @@ from .connections import Dashpot as Dashpot
 from .connections import Spring as Spring
 from .contact import Coulomb as Coulomb
 from .contact import ExponentialWeakening as ExponentialWeakening
+from .contact import FrictionFit as FrictionFit
+from .contact import FrictionLaw as FrictionLaw
 from .contact import HertzStiffness as HertzStiffness
 from .contact import LinearStiffness as LinearStiffness
 from .contact import LinearWeakening as LinearWeakening
@@ -83,6 +86,8 @@ from .contact import RigidTrack as RigidTrack
 from .contact import StaticKinetic as StaticKinetic
 from .contact import Stribeck as Stribeck
 from .contact import SurfaceContact as SurfaceContact
+from .contact import TabulatedFriction as TabulatedFriction
+from .contact import fit_friction as fit_friction
 from .cycles import NoCycle as NoCycle
 from .cycles import limit_cycle as limit_cycle
 from .cycles import lyapunov_exponent as lyapunov_exponent

@@ -34,13 +34,15 @@ def law_of(random: np.random.Generator, name: str):
         return st.ExponentialWeakening(static, kinetic, velocity)
     if name == "linear":
         return st.LinearWeakening(static, random.uniform(0.0, 2.0), kinetic)
+    if name == "tabulated":
+        return st.TabulatedFriction([0.0, velocity, 3.0 * velocity, 1.0], random.uniform(0.05, 0.8, 4))
     if name == "lugre":
         return st.LuGre(static, kinetic, velocity, 10.0 ** random.uniform(3.0, 6.0), random.uniform(0.0, 2.0))
     a, b = random.uniform(0.005, 0.03, 2)
     return st.RateAndState(static, a, b, 10.0 ** random.uniform(-6.0, -3.0), velocity, name)
 
 
-LAWS = ("coulomb", "static", "stribeck", "exponential", "linear", "lugre", "aging", "slip")
+LAWS = ("coulomb", "static", "stribeck", "exponential", "linear", "tabulated", "lugre", "aging", "slip")
 
 
 def drawn(seed: int, number: int) -> Recipe:

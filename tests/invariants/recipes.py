@@ -16,7 +16,7 @@ from physics.cases import STEEL, STRIP
 import stridula as st
 
 BEAM_LENGTH = 0.8
-KINDS = ["coulomb", "static", "stribeck", "exponential", "linear", "lugre", "aging", "slip"]
+KINDS = ["coulomb", "static", "stribeck", "exponential", "linear", "tabulated", "lugre", "aging", "slip"]
 
 
 @dataclass(frozen=True)
@@ -74,6 +74,11 @@ def laws(draw):
         return st.ExponentialWeakening(static, kinetic, velocity)
     if kind == "linear":
         return st.LinearWeakening(static, draw(number(0.0, 2.0)), kinetic)
+    if kind == "tabulated":
+        speeds = [0.0, round(velocity, 6), round(3.0 * velocity, 6), 2.0]
+        return st.TabulatedFriction(
+            speeds, [draw(number(0.05, 0.8)) for _ in speeds], 0.8 if draw(some.booleans()) else None
+        )
     if kind == "lugre":
         return st.LuGre(static, kinetic, velocity, draw(span(1e3, 1e6)), draw(number(0.0, 2.0)), draw(number(0.0, 1.0)))
     a, b = draw(number(0.005, 0.03)), draw(number(0.005, 0.03))
@@ -134,6 +139,8 @@ def converted(law, units: Units):
     v = units.velocity
     if isinstance(law, (st.Coulomb, st.StaticKinetic)):
         return law
+    if isinstance(law, st.TabulatedFriction):
+        return replace(law, velocity=[speed * v for speed in law.velocity])
     if isinstance(law, st.LinearWeakening):
         return replace(law, slope=law.slope / v)
     if isinstance(law, st.Stribeck):

@@ -12,6 +12,7 @@ from stridula.verification.systems.on_belts import Slider
 
 BELT = st.RigidTrack(velocity=0.02, name="belt")
 WEAK = st.Stribeck(0.6, 0.35, 0.01)
+MEASURED = st.TabulatedFriction([0.0, 0.01, 0.02, 0.05, 0.1, 0.3], [0.5, 0.48, 0.4, 0.36, 0.33, 0.36], 0.6)
 
 
 def oscillator(friction, belt=BELT, load=5.0, **changes) -> st.System:
@@ -213,6 +214,7 @@ def block_on_a_plane() -> st.System:
 SYSTEMS = {
     "mass on a belt, static and kinetic": (lambda: oscillator(st.StaticKinetic(0.6, 0.4)), 2e-4),
     "mass on a belt, weakening linearly": (lambda: oscillator(st.LinearWeakening(0.6, 1.5, 0.3)), 2e-4),
+    "mass on a belt, tabulated": (lambda: oscillator(MEASURED), 2e-4),
     "mass on a belt, bristles": (lambda: oscillator(BRISTLES), 2e-4),
     "mass on a belt, aging": (lambda: oscillator(AGING), 2e-4),
     "mass on a belt, slip law": (

@@ -16,6 +16,7 @@ LAWS = [
     st.Coulomb(0.4),
     st.StaticKinetic(0.5, 0.3),
     st.Stribeck(0.5, 0.3, 0.01),
+    st.TabulatedFriction([0.0, 0.01, 0.1], [0.5, 0.35, 0.3]),
     st.LuGre(0.6, 0.35, 0.05, 2e4, 8.0, 0.2),
 ]
 TOLERANCE = 1e-10

@@ -58,7 +58,7 @@ def test_the_systems_visit_all_states():
     assert np.all(shares[st.StaticKinetic] > 0.1)
     assert np.all(shares[st.LuGre] > 0.05)
     assert np.all(shares[st.RateAndState] > 0.02)
-    for kind in (st.Stribeck, st.LinearWeakening):
+    for kind in (st.Stribeck, st.LinearWeakening, st.TabulatedFriction):
         assert np.all(shares[kind][1:] > 0.1)
     assert shares[st.ExponentialWeakening][2] > 0.1
 

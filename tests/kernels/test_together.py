@@ -164,6 +164,7 @@ OTHER_LAWS = {
     "static and kinetic": st.StaticKinetic(0.3, 0.2),
     "Stribeck": st.Stribeck(0.3, 0.2, SPEED),
     "linear weakening": st.LinearWeakening(0.3, 0.1 / SPEED, 0.2),
+    "tabulated": st.TabulatedFriction(SPEED * np.array([0.0, 0.3, 1.0, 3.0]), [0.25, 0.22, 0.2, 0.21], 0.3),
     "LuGre": st.LuGre(0.3, 0.2, SPEED, stiffness=1.0),
     "rate and state": st.RateAndState(0.2, 0.01, 0.015, 3.0, SPEED),
 }

@@ -29,6 +29,7 @@ LAWS = [
     st.StaticKinetic(0.4, 0.3),
     st.Stribeck(0.4, 0.3, 0.5),
     st.LinearWeakening(0.4, 0.1, 0.2),
+    st.TabulatedFriction([0.0, 0.2, 0.5, 1.0, 2.0], [0.35, 0.3, 0.27, 0.25, 0.26], 0.4),
     st.RateAndState(0.5, 0.02, 0.01, 1e-4, 1e-3),
     st.LuGre(0.4, 0.3, 0.05, 2e4, 5.0, 0.1),
 ]

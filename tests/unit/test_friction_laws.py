@@ -28,6 +28,7 @@ SOUND = {
     st.LinearWeakening: {"static": 0.5, "slope": 1.0, "kinetic": 0.3},
     st.LuGre: {"static": 0.5, "kinetic": 0.3, "velocity": 0.1, "stiffness": 1e5},
     st.RateAndState: STATE,
+    st.TabulatedFriction: {"velocity": [0.0, 0.1, 0.3], "coefficient": [0.5, 0.3, 0.35]},
 }
 NOT_NEGATIVE = [*NUMBERS, -1e-9]
 POSITIVE = [*NOT_NEGATIVE, 0.0]
@@ -55,6 +56,7 @@ BAD = {
         "evolution": ["ageing", None, 1],
         "initial_state": [NAN, INF, True, "1", 0.0, -1.0],
     },
+    st.TabulatedFriction: {"static": [0.4, -1.0, NAN, "1"]},
 }
 CASES = [
     pytest.param(law, name, value, id=f"{law.__name__}.{name}={value!r}")

@@ -15,6 +15,7 @@ from .spectra import (
     tones,
 )
 from .surfaces import surface
+from .wear import worn
 
 __all__ = [
     "MOTIONS",
@@ -42,4 +43,5 @@ __all__ = [
     "surface",
     "swing",
     "tones",
+    "worn",
 ]

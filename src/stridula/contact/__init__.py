@@ -1,6 +1,7 @@
 """Contacts between bodies: friction laws, rigid tracks, point and surface contacts."""
 
 from .coulomb import Coulomb, StaticKinetic
+from .fits import FrictionFit, fit_friction
 from .friction_law import FrictionLaw
 from .laws import LAWS
 from .lugre import LuGre
@@ -10,6 +11,7 @@ from .rigid_track import RigidTrack
 from .stiffness import STIFFNESSES, ContactStiffness, HertzStiffness, LinearStiffness, PowerStiffness
 from .surface_contact import SurfaceContact
 from .surface_points import SurfacePoints
+from .tabulated import TabulatedFriction
 from .weakening import ExponentialWeakening, LinearWeakening, Stribeck
 
 __all__ = [
@@ -18,6 +20,7 @@ __all__ = [
     "ContactStiffness",
     "Coulomb",
     "ExponentialWeakening",
+    "FrictionFit",
     "FrictionLaw",
     "HertzStiffness",
     "LinearStiffness",
@@ -31,4 +34,6 @@ __all__ = [
     "Stribeck",
     "SurfaceContact",
     "SurfacePoints",
+    "TabulatedFriction",
+    "fit_friction",
 ]

@@ -2,30 +2,42 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
-from typing import ClassVar
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError
 from ..declared import check_declared
+from .curves import Curve, of_formula
 from .linearised import Linearised
 
 # Step of a central difference over the speed.
 STEP = 1e-5
+# Slip speed that stands for the slowest sliding, relative to the characteristic one.
+SLOWEST = 1e-15
+# Difference of coefficients that may be due to rounding, and that of those at rest and in the slowest sliding.
+EQUAL, CLOSE = 1e-9, 1e-6
+CURVE = "CURVE"
 
 
 class FrictionLaw(ABC):
-    """Base class of friction laws: a frozen dataclass with a range beside each field, and properties for the march.
+    """Base class of friction laws: a frozen dataclass with a range beside each field.
 
-    The march computes one of the laws of the package, by `kernel_code` and `parameters`; a law from outside whose other
-    methods do not agree with that is refused when a system is simulated or linearised.
+    A law of your own needs a formula, `coefficient_at`. The march computes it from a curve in pieces that equals the
+    formula to round-off. A formula that cannot be used, because it is not finite, is below zero, jumps in sliding or
+    depends on the sense of slip, is refused when the law is built.
+
+    Laws of the package have formulas in the march, named by `kernel_code`, with `parameters`. A law from outside may
+    use one of them if its other methods agree with it, which is checked when a system is simulated or linearised.
 
     Attributes
     ----------
     law : str
-        Name in scenarios.
+        Name in scenarios and titles.
     set_valued : bool
         Whether a contact sticks exactly, under any force up to a limit.
     depends_on_speed : bool
@@ -40,7 +52,7 @@ class FrictionLaw(ABC):
         Whether the internal state has a component along each tangent in space.
     """
 
-    law: ClassVar[str]
+    law: ClassVar[str] = "own law"
     set_valued: ClassVar[bool] = True
     depends_on_speed: ClassVar[bool] = True
     over_decades: ClassVar[bool] = False
@@ -50,6 +62,8 @@ class FrictionLaw(ABC):
 
     def __post_init__(self) -> None:
         check_declared(self)
+        if self.kernel_code == CURVE and self.set_valued:
+            _ = self.curve
 
     @property
     def has_state(self) -> bool:
@@ -77,12 +91,29 @@ class FrictionLaw(ABC):
 
     @property
     def kernel_code(self) -> str:
-        """Name of its constant in the layout of the march."""
+        """Name of its constant in the layout of the march, that of a curve unless the law has parameters there."""
+        if type(self).parameters is FrictionLaw.parameters:
+            return CURVE
         return self.law.upper().replace("-", "_").replace(" ", "_")
 
-    @abstractmethod
+    @cached_property
+    def curve(self) -> Curve:
+        """The coefficient in sliding as a curve in pieces, for laws without parameters in the march."""
+        check_formula(self)
+
+        def sliding(speed: Array) -> Array:
+            return self.coefficient_at(np.maximum(speed, SLOWEST * self.reach))
+
+        try:
+            return of_formula(sliding, self.reach)
+        except ValueError as error:
+            raise ArgumentError("coefficient_at", str(error), where=type(self).__name__) from None
+
     def parameters(self) -> dict[str, float]:
         """Return the parameters of the law in the march, by their names there: `_kernels.layout.laws.PARAMETERS`."""
+        curve = self.curve
+        own = {"pieces": len(curve.coefficients), "order": curve.order}
+        return {"static": self.holding, **own, "end_slope": curve.end_slope}
 
     @abstractmethod
     def coefficient_at(self, velocity: Array | float) -> Array:
@@ -102,7 +133,12 @@ class FrictionLaw(ABC):
     @property
     def holding(self) -> float:
         """Ratio up to which a contact is held at rest [1]."""
-        return float(self.coefficient_at(np.zeros(1))[0])
+        return float(np.asarray(self.coefficient_at(np.zeros(1))).flat[0])
+
+    @property
+    def fastest(self) -> float:
+        """Slip speed up to which its friction was measured [m/s], infinite for formulas."""
+        return math.inf
 
     @property
     def reach(self) -> float:
@@ -120,3 +156,33 @@ class StaticAndKinetic(FrictionLaw):
         super().__post_init__()
         if self.static < self.kinetic:
             raise ArgumentError("static", f"be at least kinetic ({self.kinetic!r})", self.static)
+
+
+def check_formula(law: FrictionLaw) -> None:
+    """Raise ValueError unless the formula of a law can be used: a finite coefficient of 0 or above in both senses."""
+    where, speeds = type(law).__name__, law.reach * np.concatenate([[0.0, SLOWEST], np.logspace(-8.0, 4.0, 481)])
+    found = [_tried(law, speeds), _tried(law, -speeds)]
+    for values, sense in zip(found, (1.0, -1.0), strict=True):
+        wrong = ~(np.isfinite(values) & (values >= 0.0))
+        if wrong.any():
+            at = f"coefficient_at({sense * speeds[wrong.argmax()]:.4g})"
+            raise ArgumentError(at, "be finite and 0 or above", float(values[wrong.argmax()]), where=where)
+    different = np.abs(found[0] - found[1]) > EQUAL * np.abs(found[0])
+    if different.any():
+        first = int(different.argmax())
+        got = f"{found[0][first]:.6g} and {found[1][first]:.6g} at {speeds[first]:.4g} m/s"
+        raise ArgumentError("coefficient_at", "be the same in both senses of slip", got=got, where=where)
+    if found[0][0] < (1.0 - CLOSE) * found[0][1]:
+        got = f"{found[0][0]:.6g} at rest and {found[0][1]:.6g} in the slowest sliding"
+        raise ArgumentError("coefficient_at", "hold at rest at least its friction in sliding", got=got, where=where)
+
+
+def _tried(law: FrictionLaw, velocities: Array) -> Array:
+    """Return the coefficients of a formula at velocities."""
+    try:
+        values: Any = np.asarray(law.coefficient_at(velocities), dtype=float)
+        return np.asarray(np.broadcast_to(values, velocities.shape))
+    except Exception as error:
+        allowed = "take an array of velocities and return an array of coefficients"
+        got = f"{type(error).__name__}: {error}"
+        raise ArgumentError("coefficient_at", allowed, got=got, where=type(law).__name__) from error

@@ -7,6 +7,7 @@ from .coulomb import Coulomb, StaticKinetic
 from .friction_law import FrictionLaw
 from .lugre import LuGre
 from .rate_and_state import RateAndState
+from .tabulated import TabulatedFriction
 from .weakening import ExponentialWeakening, LinearWeakening, Stribeck
 
 LAWS: tuple[type[FrictionLaw], ...] = (
@@ -17,6 +18,7 @@ LAWS: tuple[type[FrictionLaw], ...] = (
     LinearWeakening,
     LuGre,
     RateAndState,
+    TabulatedFriction,
 )
 
 

@@ -73,6 +73,8 @@ class SurfaceContact:
         point on it [m], and the angular velocity about it, counter-clockwise with the axis pointing at the viewer
         [rad/s]. Each point of the track then moves across the axis. The vibration of the track is described in a frame
         at rest: unlike those of a turning `AxisymmetricBody`, its waves are not carried round.
+    wear : sequence of float, optional
+        Depth worn off the face at each point [m], which adds to its gap; `worn` computes it from a record.
 
     Raises
     ------
@@ -92,6 +94,7 @@ class SurfaceContact:
     overlay: bool = False
     name: str = "surface"
     turning: tuple[Sequence[float], Sequence[float], float] | None = None
+    wear: Annotated[Sequence[float], Each(Number("m", least=0.0))] | None = None
 
     def __post_init__(self) -> None:
         instance("body", self.body, (SolidBody, ReducedBody))
@@ -111,6 +114,8 @@ class SurfaceContact:
         if self.turning is not None:
             object.__setattr__(self, "turning", self._checked_turning(self.turning))
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
+        if self.wear is not None and len(self.wear) != self.areas.size:
+            raise ArgumentError("wear", f"have {self.areas.size} depths, one for each point", got=str(len(self.wear)))
         if len(self.contacts) > MANY:
             warn_of(
                 [
@@ -165,7 +170,7 @@ class SurfaceContact:
                 self.body.at(place.tolist()) if self.overlay else self.body.contact_point(self.face, number),
                 track,
                 friction=self.friction,
-                gap=max(gap + self.gap, 0.0),
+                gap=max(gap + self.gap, 0.0) + (0.0 if self.wear is None else self.wear[number]),
                 normal=tuple(facing.tolist()),
                 **self._directions(track, place, facing),
                 stiffness=None if self.stiffness is None else per_area(self.stiffness, area),  # type: ignore[arg-type]

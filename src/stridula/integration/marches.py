@@ -21,6 +21,7 @@ from .._kernels.modes.turning import OF_CONTACT
 from ..arrays import Array
 from ..lowering import Assembly
 from ..lowering.blocks import Blocks, ContactBlocks, ProbeBlocks
+from ..lowering.own_laws import of_one_width
 from ..lowering.packing import (
     PLAIN,
     aligned,
@@ -221,7 +222,7 @@ class March:
         runs, count, sizes = self.runs, self.contact_count, self.layout.sizes
         return Contacts(
             contacts[0].codes,
-            np.stack([one.laws for one in contacts], axis=1).reshape(count * runs, -1),
+            np.stack(of_one_width([one.laws for one in contacts]), axis=1).reshape(count * runs, -1),
             contacts[0].first_rows,
             columns(side_by_side([one.constants.reshape(-1) for one in contacts])),
             columns(side_by_side([one.compliance[[0, 0, 1], [0, 1, 1]] for one in contacts])),

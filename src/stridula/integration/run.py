@@ -224,13 +224,32 @@ class Run:
             names, points = surfaces.names, ()
         return PlainRecord(self._time(), variables, names, self._attributes(False, {}), points)
 
-    def _note_of_contacts(self) -> list[str]:
-        """Return a note if nothing pressed during the whole record, as under a load that pulls."""
+    def _notes_of_contacts(self) -> list[str]:
+        """Return notes if nothing pressed, as under a load that pulls, and on slips beyond the measured friction."""
         if "normal_force" not in self.wanted:
             # The row has no values.
             return []
         pressed = self.contact_record[at.NORMAL_FORCE, :, : self.done]
-        return ["no contact pressed at any time"] if pressed.size and not pressed.any() else []
+        if pressed.size and not pressed.any():
+            return ["no contact pressed at any time"]
+        return self._notes_of_speeds(pressed) if "slip_velocity" in self.wanted else []
+
+    def _notes_of_speeds(self, pressed: Array) -> list[str]:
+        """Return a note on the contact that slid farthest beyond the speeds at which its friction was measured."""
+        measured = np.array([contact.friction.fastest for contact in self.system.contacts])
+        if not pressed.size or not np.isfinite(measured).any():
+            return []
+        columns = [at.SLIP_VELOCITY, *([at.SLIP_VELOCITY_B] if self.system.has_two_tangents else [])]
+        slips = [self.contact_record[column, :, : self.done] for column in columns]
+        speeds = np.where(pressed > 0.0, np.hypot.reduce(slips, axis=0, initial=0.0), 0.0).max(axis=1)
+        farthest = int(np.argmax(speeds / measured))
+        if speeds[farthest] <= measured[farthest]:
+            return []
+        name = self.system.contact_names[farthest]
+        return [
+            f"{name} slid at up to {speeds[farthest]:.3g} m/s, but its friction was measured up to "
+            f"{measured[farthest]:.3g} m/s and is taken as constant beyond"
+        ]
 
     @property
     def _last_step(self) -> int:
@@ -275,7 +294,7 @@ class Run:
             "steps_per_sample": timing.ratio,
             "sample_interval": timing.interval,
             "modes": self.arrays.mode_count,
-            "notes": "; ".join([*notes, *note_of_start(self.system), *self._note_of_contacts()]),
+            "notes": "; ".join([*notes, *note_of_start(self.system), *self._notes_of_contacts()]),
             "contact_tolerance": self.settings.solve.tolerance,
             "initial_energy": self.initial_energy,
             "largest_energy": self.belief.largest_energy,

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from .._kernels.layout import columns as at
-from .._kernels.layout.laws import LAW_COLUMNS, STATIC
+from .._kernels.layout.laws import STATIC
 from ..arrays import Array
 from ..bodies.paths import Path
 from ..checks import ArgumentError, at_most
 from .assembly import Assembly
 from .contact_rows import ContactRows
-from .own_laws import law_of_march
+from .own_laws import law_of_march, of_one_width
 from .schemes import Scheme
 from .stepping import Stepping
 
@@ -207,8 +207,9 @@ class ContactBlocks:
 def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
     """Return the contacts as arrays for the march."""
     count = len(arrays.contacts)
-    constants, laws = np.zeros((count, at.CONTACT_CONSTANTS)), np.zeros((count, LAW_COLUMNS))
-    codes = np.zeros(count, dtype=np.int64)
+    constants = np.zeros((count, at.CONTACT_CONSTANTS))
+    marched = [law_of_march(one.contact.friction) for one in arrays.contacts]
+    codes, laws = np.array([code for code, _ in marched]), np.array(of_one_width([row for _, row in marched]))
     rows = np.concatenate([contact.fixed for contact in arrays.contacts])
     first_rows = np.cumsum([0, *(len(contact.fixed) for contact in arrays.contacts)])
     paths = tuple(_path_modes(one) for one in arrays.contacts)
@@ -220,7 +221,6 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
             constants[i, at.LOW : at.AT_REST] = (*path.ends, *angles)
         if one.circle is not None:
             constants[i, [at.ALONG, at.ALONG_PHASE]] = one.rate, -one.rate * one.contact.at
-        codes[i], laws[i] = law_of_march(one.contact.friction)
         constants[i, at.AT_REST] = laws[i, STATIC]
         if one.yields is not None:
             constants[i, at.YIELD_STIFFNESS : at.YIELD_REACH] = one.yields.numbers

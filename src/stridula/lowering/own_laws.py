@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -67,11 +67,18 @@ def _differences(law: FrictionLaw) -> Iterator[tuple[str, str]]:
 
 def law_of_march(law: FrictionLaw) -> tuple[int, Array]:
     """Return the code of a law and its row of parameters."""
-    code, row = CODES[law.kernel_code], np.zeros(LAW_COLUMNS)
+    code = CODES[law.kernel_code]
+    row = np.concatenate([np.zeros(LAW_COLUMNS), law.curve.flat if code == at.CURVE else []])
     for name, value in law.parameters().items():
         row[PARAMETERS[law.kernel_code][name]] = value
     row[NEW_STATE] = law.state_at_landing
     return code, row
+
+
+def of_one_width(rows: Sequence[Array]) -> list[Array]:
+    """Return tables of laws, of any width, with zeros behind the shorter rows."""
+    width = max(one.shape[-1] for one in rows)
+    return [np.concatenate([one, np.zeros((*one.shape[:-1], width - one.shape[-1]))], axis=-1) for one in rows]
 
 
 def _in_march(law: FrictionLaw) -> Law:

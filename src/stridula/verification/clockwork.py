@@ -9,7 +9,16 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from ..arrays import Array
-from ..contact import ExponentialWeakening, FrictionLaw, LinearWeakening, LuGre, RateAndState, StaticKinetic, Stribeck
+from ..contact import (
+    ExponentialWeakening,
+    FrictionLaw,
+    LinearWeakening,
+    LuGre,
+    RateAndState,
+    StaticKinetic,
+    Stribeck,
+    TabulatedFriction,
+)
 from ..lowering.schemes import ExactModal
 from .case import Case, Curve, Outcome, Row, Sketch
 from .systems.on_belts import Slider, rubbing_of
@@ -21,6 +30,7 @@ LAWS: dict[str, FrictionLaw] = {
     "Stribeck": Stribeck(0.6, 0.3, velocity=0.3, viscous=0.02),
     "exponential": ExponentialWeakening(0.6, 0.3, velocity=0.3),
     "linear": LinearWeakening(0.6, slope=0.5, kinetic=0.3),
+    "tabulated": TabulatedFriction([0.0, 0.1, 0.3, 0.6, 1.2, 2.0, 4.0], [0.6, 0.52, 0.41, 0.34, 0.3, 0.31, 0.33], 0.6),
     "LuGre": LuGre(0.6, 0.3, velocity=0.3, stiffness=100.0, damping=1.0),
     "rate and state, aging": RateAndState(0.5, a=0.01, b=0.05, slip_distance=0.05, velocity=0.4),
     "rate and state, slip": RateAndState(0.5, a=0.01, b=0.05, slip_distance=0.05, velocity=0.4, evolution="slip"),
@@ -102,7 +112,7 @@ def extremes(time: Array, place: Array) -> tuple[Array, Array]:
 
 
 def clockwork() -> Outcome:
-    """Period and swing of the cycle under seven laws at two velocities of the belt, in 50 and in 20 steps a period."""
+    """Period and swing of the cycle under eight laws at two velocities of the belt, in 50 and in 20 steps a period."""
     rows, curves, scheme = [], [], ExactModal()
     for name, law in LAWS.items():
         for belt in (0.5 * SLOWER, SLOWER) if is_aged(law) else (SLOWER, FASTER):
@@ -128,7 +138,7 @@ def clockwork() -> Outcome:
 CASES = (
     Case(
         "clockwork",
-        "Stick-slip of a mass on a belt under seven laws, in few steps a period",
+        "Stick-slip of a mass on a belt under eight laws, in few steps a period",
         "integration from stop to start by scipy's DOP853 to 1e-12; LSODA to 1e-10 for laws with a state",
         clockwork,
     ),

@@ -17,6 +17,8 @@ def held_up_to(law, was_sticking):
         return law.coefficient
     if isinstance(law, st.StaticKinetic) and not was_sticking:
         return law.kinetic
+    if isinstance(law, st.TabulatedFriction):
+        return law.holding if was_sticking else curve(law, 0.0)
     return law.static
 
 
@@ -26,6 +28,8 @@ def curve(law, speed):
         return law.coefficient
     if isinstance(law, st.StaticKinetic):
         return law.kinetic
+    if isinstance(law, st.TabulatedFriction):
+        return float(law.coefficient_at(max(speed, 1e-300)))
     if isinstance(law, st.LinearWeakening):
         return max(law.static - law.slope * speed, law.kinetic)
     exponent, viscous = (law.exponent, law.viscous) if isinstance(law, st.Stribeck) else (1.0, 0.0)

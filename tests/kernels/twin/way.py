@@ -82,13 +82,13 @@ def on_its_way(before, free, normal, h):
     pressed, pushed = np.linalg.solve(free.w, [-free.gap, -free.slip - free.strayed])
     needed = driven if before.status == SLIDING or pressed <= 0 else -pushed / pressed
     if before.status == STICKING and last == 0.0:
-        grows = needed - (before.tangential / before.normal if before.normal else needed)
+        grows = needed - (2 * past if before.normal else needed)
         way = Sliding(law, h, pull, pull * driven, pull * grows)
         return _from_stick(way, needed, grows, driven, free.let_go)
     if before.status == STICKING:
         short = 2 * (needed - past)
         if abs(short) <= held:
-            return Way(needed, needed / 2, STICKING, 1.0)
+            return Way(needed, short / 2, STICKING, 1.0)
         return Sliding(law, h, pull, 2 * pull * (driven - past)).follow(0.0, 0.0, np.sign(short), past)
     if before.status == SEPARATED:
         if abs(needed) <= held:
@@ -103,7 +103,7 @@ def _from_stick(way, needed, grows, driven, let_go):
     """The way of a contact that stuck to the end of the last step: it sticks, breaks, or broke in the last step."""
     held = laws.held_up_to(way.law, not let_go)
     if max(abs(needed), abs(needed + grows)) <= held and not let_go:
-        return Way(needed, needed / 2 + grows / 3, STICKING, 1.0)
+        return Way(needed, needed / 2, STICKING, 1.0)
     mean = needed / 2 - grows / 6
     if abs(needed) > held:
         # It broke before this step: from the last one on it slides with the ratio of incipient sliding.
@@ -183,6 +183,11 @@ class Sliding:
         law, h = self.law, self.h
         if isinstance(law, st.StaticKinetic):
             return 1.0
+        if isinstance(law, st.TabulatedFriction):
+            speed, pieces = abs(u) / h, law.curve
+            bend = np.interp(speed, pieces.speed, pieces.bend) + max(speed - pieces.speed[-1], 0.0)
+            steep = abs(law.linearised_at(speed).slope)
+            return max(0.5 / (abs(rate) / (bend * h) + self.pull * steep / h + 0.5), 1 / 64)
         if isinstance(law, st.LinearWeakening):
             scale, steep = law.static / law.slope * h, law.slope / h * (ratio > law.kinetic)
         else:

@@ -15,10 +15,14 @@ from ..layout.laws import (
     BRISTLE_VISCOUS,
     DIRECT,
     END,
+    END_SLOPE,
     EVOLVING,
     EXPONENT,
+    FIRST_SPEED,
     FLOOR,
     KINETIC,
+    ORDER,
+    PIECES,
     REFERENCE,
     REFERENCE_VELOCITY,
     SET_VALUED,
@@ -42,6 +46,8 @@ def holding_ratio(law: Law, was_sticking: bool) -> Number:
     table, row = law.table, law.row
     if law.code == at.STATIC_KINETIC and not was_sticking:
         return table[row, KINETIC]
+    if law.code == at.CURVE and not was_sticking:
+        return curve_at(law, 0.0)[0]
     return table[row, STATIC]
 
 
@@ -59,7 +65,38 @@ def sliding_ratio(law: Law, speed: Number) -> Number:
         powered = share if exponent == 1.0 else (share * share if exponent == 2.0 else share**exponent)
         weakened = (table[row, STATIC] - table[row, KINETIC]) * math.exp(-powered)
         return table[row, KINETIC] + weakened + table[row, VISCOUS] * speed
+    if law.code == at.CURVE:
+        return curve_at(law, speed)[0]
     return max(table[row, STATIC] - table[row, SLOPE] * speed, table[row, FLOOR])
+
+
+@strict
+def curve_at(law: Law, speed: Number) -> Numbers:
+    """Return the ratio of a curve at a speed, its slope, and the change of the speed over which it bends."""
+    table, row = law.table, law.row
+    pieces, order = int(table[row, PIECES]), int(table[row, ORDER])
+    low, high = 0, pieces
+    while high - low > 1:
+        middle = (low + high) // 2
+        if table[row, FIRST_SPEED + middle] <= speed:
+            low = middle
+        else:
+            high = middle
+    begin, end = table[row, FIRST_SPEED + low], table[row, FIRST_SPEED + low + 1]
+    farther, per_speed = speed - end, 2.0 / (end - begin)
+    # From -1 to 1 over the piece.
+    place = min((speed - begin) * per_speed - 1.0, 1.0)
+    first = FIRST_SPEED + 2 * (pieces + 1) + low * order
+    ratio, slope = table[row, first + order - 1], 0.0
+    for k in range(order - 2, -1, -1):
+        slope = slope * place + ratio
+        ratio = ratio * place + table[row, first + k]
+    bends = FIRST_SPEED + pieces + 1 + low
+    share = 0.5 * (place + 1.0)
+    bend = (1.0 - share) * table[row, bends] + share * table[row, bends + 1]
+    if farther > 0.0:
+        return ratio + table[row, END_SLOPE] * farther, table[row, END_SLOPE], bend + farther
+    return ratio, slope * per_speed, bend
 
 
 @strict
@@ -70,6 +107,8 @@ def speed_scale(law: Law, state: Number) -> Number:
         return table[row, END]
     if law.code == at.STRIBECK or law.code == at.LUGRE:
         return table[row, VELOCITY]
+    if law.code == at.CURVE:
+        return curve_at(law, 0.0)[2]
     # a asinh(V / w): w = 2 V0 exp(-(reference + b ln(V0 theta / D)) / a), kept above the smallest numbers.
     return 2.0 * table[row, REFERENCE_VELOCITY] * math.exp(-min(ageing(law, state), 600.0))
 

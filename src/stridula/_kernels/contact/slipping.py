@@ -14,7 +14,7 @@ from ..lanes.operations import Number, Numbers, Pair
 from ..layout import columns as at
 from ..layout.contact_values import Before, Compliance, Drive, Free, Law
 from ..layout.laws import BRISTLE_STIFFNESS, FLOOR, KINETIC, SLIP_DISTANCE, SLOPE, STATIC, VELOCITY, VISCOUS
-from .friction import holding_ratio, next_state, ratio_after, sliding_ratio, speed_scale, state_ratio
+from .friction import curve_at, holding_ratio, next_state, ratio_after, sliding_ratio, speed_scale, state_ratio
 
 # A contact that stopped slid in this step and is at rest at its end: the next step finds it sticking.
 SEPARATED, STICKING, SLIDING, STOPPED = 0, 1, 2, 3
@@ -53,6 +53,9 @@ def part_of(slip: Number, rate: Number, ratio: Number, pull: Number, law: Law, s
     table, row = law.table, law.row
     if law.code == at.STATIC_KINETIC:
         return 1.0
+    if law.code == at.CURVE:
+        _, slope, bend = curve_at(law, abs(slip) / step)
+        return max(PART / (abs(rate) / (bend * step) + pull * abs(slope) / step + PART), 1.0 / MOST_PARTS)
     scale, size = speed_scale(law, 0.0) * step, abs(slip)
     if law.code == at.LINEAR_WEAKENING:
         steep = table[row, SLOPE] / step if ratio > table[row, FLOOR] else 0.0
@@ -160,11 +163,12 @@ def ratio_over_step(
     driven = (moved + strayed) / pull if pull > 0.0 else math.copysign(math.inf, moved + strayed)
     needed = driven if was == SLIDING else ratio_of_stick(gap, slip + strayed, w, driven)
     if was == STICKING and last == 0.0:
-        # At rest for a step or more: the force grows through the step as it did in the last one.
-        earlier = before.tangential / before.normal if before.normal > 0.0 else needed
+        # At rest for a step or more: the force grows through the step as it did in the last one, from the ratio that
+        # held it there, twice its past part.
+        earlier = 2.0 * past if before.normal > 0.0 else needed
         grows = needed - earlier
         if free.let_go <= 0.5 and abs(needed) <= held and abs(needed + grows) <= held:
-            return needed, 0.5 * needed + grows / 3.0, STICKING, 1.0
+            return needed, 0.5 * needed, STICKING, 1.0
         drive = Drive(pull * driven, pull * grows)
         if abs(needed) > held:
             sense = 1.0 if needed > 0.0 else -1.0
@@ -183,7 +187,7 @@ def ratio_over_step(
         # It came to rest within the last step.
         short = 2.0 * (needed - past)
         if free.let_go <= 0.5 and abs(short) <= held:
-            return needed, 0.5 * needed, STICKING, 1.0
+            return needed, 0.5 * short, STICKING, 1.0
         sense = 1.0 if short > 0.0 else -1.0
         drive = Drive(2.0 * pull * (driven - past), 0.0)
         more, rest, stuck = slide_through(0.0, 0.0, drive, pull, sense, law, step)

@@ -359,13 +359,12 @@ def ratio_over_step(
     driven = needed if is_beyond(driven) else driven
     asked = size_of(needed)
     if was == STICKING and last.a == 0.0 and last.b == 0.0:
-        # At rest for a step or more: the force grows through the step as it did in the last one.
-        share = 1.0 / before.normal if before.normal > 0.0 else 0.0
-        earlier = scaled(share, before.tangential) if share > 0.0 else needed
+        # At rest for a step or more: as in the plane.
+        earlier = scaled(2.0, past) if before.normal > 0.0 else needed
         grows = plus(needed, -1.0, earlier)
         beyond = plus(needed, 1.0, grows)
         if free.let_go <= 0.5 and asked <= held and size_of(beyond) <= held:
-            return needed, plus(scaled(0.5, needed), 1.0, over(grows, 3.0)), STICKING, 1.0
+            return needed, scaled(0.5, needed), STICKING, 1.0
         drive = DriveInSpace(missed, NOTHING if is_beyond(needed) else times(pull, grows))
         if asked > held:
             return after_break(earlier, needed, driven, held, drive, pull, law, step)
@@ -376,18 +375,18 @@ def ratio_over_step(
         more, rest, stuck = slide_through(NOTHING, broke, drive, pull, way, law, step)
         ratio = plus(plus(plus(first, 1.0, more), 0.5, needed), -1.0, over(grows, 6.0))
         return ratio, plus(less, 1.0, rest), STOPPED if stuck > 0.0 else SLIDING, broke + stuck
-    rests = needed, scaled(0.5, needed), STICKING, 1.0
     if was == STICKING:
         # It came to rest within the last step.
-        if free.let_go <= 0.5 and 2.0 * size_of(plus(needed, -1.0, past)) <= held:
-            return rests
+        half = plus(needed, -1.0, past)
+        if free.let_go <= 0.5 and 2.0 * size_of(half) <= held:
+            return needed, half, STICKING, 1.0
         left = scaled(2.0, plus(missed, -1.0, times(pull, past)))
         way = direction_of(left, ALONG_A)
         more, rest, stuck = slide_through(NOTHING, 0.0, DriveInSpace(left, NOTHING), pull, way, law, step)
         return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
     # It lands: half of its force acts before the step.
     if free.let_go <= 0.5 and asked <= held:
-        return rests
+        return needed, scaled(0.5, needed), STICKING, 1.0
     begun, change = scaled(0.5, plus(last, 1.0, moved)), plus(moved, -1.0, last)
     speed, way = size_of(begun), direction_of(begun, direction_of(change, ALONG_A))
     past = scaled(0.5 * sliding_ratio(law, speed / step), way)

@@ -12,9 +12,13 @@ SLOPE, FLOOR, END = range(1, 4)
 BRISTLE_STIFFNESS, BRISTLE_DAMPING, BRISTLE_VISCOUS = range(3, 6)
 # Rate and state: the ratio at the reference velocity, and its changes with the logarithms of velocity and age.
 REFERENCE, DIRECT, EVOLVING, SLIP_DISTANCE, REFERENCE_VELOCITY = range(5)
+# A curve over the slip speed in pieces: their number, that of the coefficients of each, and the slope beyond the last.
+PIECES, ORDER, END_SLOPE = range(1, 4)
 # State of a new contact.
 NEW_STATE = 7
 LAW_COLUMNS = 8
+# Behind these columns, for a curve: the speeds between pieces, the speeds over which it bends there, and coefficients.
+FIRST_SPEED = LAW_COLUMNS
 
 _WEAKENING = {"static": STATIC, "kinetic": KINETIC, "velocity": VELOCITY}
 _BRISTLES = {"stiffness": BRISTLE_STIFFNESS, "damping": BRISTLE_DAMPING, "viscous": BRISTLE_VISCOUS}
@@ -28,8 +32,9 @@ PARAMETERS = {
     "LUGRE": {**_WEAKENING, **_BRISTLES},
     "AGING": _RATE_AND_STATE,
     "SLIP": _RATE_AND_STATE,
+    "CURVE": {"static": STATIC, "pieces": PIECES, "order": ORDER, "end_slope": END_SLOPE},
 }
 CODES = {name: getattr(at, name) for name in PARAMETERS}
 # Whether a law sticks exactly, by its code.
-_STICKS = {"COULOMB", "STATIC_KINETIC", "STRIBECK", "LINEAR_WEAKENING"}
+_STICKS = {"COULOMB", "STATIC_KINETIC", "STRIBECK", "LINEAR_WEAKENING", "CURVE"}
 SET_VALUED = tuple(name in _STICKS for name in sorted(CODES, key=CODES.__getitem__))
