@@ -119,8 +119,8 @@ class SurfaceContact:
         if len(self.contacts) > MANY:
             warn_of(
                 [
-                    f"{len(self.contacts)} points of {self.name!r}: a second of motion with 120 takes minutes, and the "
-                    "time grows with the square; give the body fewer, such as "
+                    f"{len(self.contacts)} points of {self.name!r}: a second of motion with 120 takes minutes to half "
+                    "an hour, and the time grows with the third power; give the body fewer, such as "
                     f"contact_faces={{{self.face!r}: 30}}"
                 ]
             )
