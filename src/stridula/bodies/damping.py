@@ -163,9 +163,10 @@ def check_damping_count(damping: Any, modes: int) -> None:
         raise ArgumentError("damping", f"have one ratio or {modes}, one for each mode kept", damping, got=len(damping))
 
 
-def damping_rates(damping: Any, angular_frequency: Array) -> Array:
-    """Return ``2 zeta w`` [1/s] of every mode under checked damping, shape (modes,)."""
+def damping_rates(damping: Any, angular_frequency: Array, loss_factor: float | Array = 0.0) -> Array:
+    """Return ``2 zeta w`` [1/s] of every mode under checked damping and the losses of its materials, shape (modes,)."""
+    lost = np.asarray(loss_factor * angular_frequency)
     if is_damping_law(damping):
-        return damping.rates(angular_frequency)
+        return np.asarray(damping.rates(angular_frequency) + lost)
     check_damping_count(damping, angular_frequency.size)
-    return np.asarray(2.0 * np.asarray(damping) * angular_frequency)
+    return np.asarray(2.0 * np.asarray(damping) * angular_frequency + lost)

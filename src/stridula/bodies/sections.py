@@ -26,6 +26,9 @@ class Material:
         Mass density [kg/m³].
     poisson : float, optional
         Poisson's ratio [1], for plates and solids; from -1 to 0.5, both excluded.
+    loss_factor : float, optional
+        Loss factor [1], twice a damping ratio: a mode loses ``2 pi`` times this share of the strain energy that it has
+        in the material in a period. It adds to the damping of a body.
 
     Warns
     -----
@@ -36,6 +39,7 @@ class Material:
     young: Annotated[float, Number("Pa", above=0.0)]
     density: Annotated[float, Number("kg/m3", above=0.0)]
     poisson: Annotated[float, Number(above=-1.0, below=0.5)] = 0.3
+    loss_factor: Annotated[float, Number(least=0.0, below=1.0)] = 0.0
 
     def __post_init__(self) -> None:
         check_declared(self)

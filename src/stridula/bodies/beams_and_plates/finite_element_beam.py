@@ -318,7 +318,7 @@ def _reduce(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
         raise ArgumentError("cutoff", "leave at least one mode", beam.cutoff, got=f"{beam.cutoff!r} Hz")
     directions = np.zeros((2, mass.shape[0]))
     directions[0, 0::3] = directions[1, 1::3] = 1.0
-    modes = Modes(angular, damping_rates(beam.damping, angular), directions @ mass @ shapes)
+    modes = Modes(angular, damping_rates(beam.damping, angular, material.loss_factor), directions @ mass @ shapes)
     return _Reduced(beam, modes, shapes, mass, fixed)
 
 

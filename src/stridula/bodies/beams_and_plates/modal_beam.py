@@ -262,7 +262,10 @@ def _modes(beam: ModalBeam) -> Modes:
     translation = np.zeros((2, angular.size))
     translation[1, : bending.size] = line * mean_bending
     translation[0, bending.size :] = line * mean_axial
-    return Modes(angular, damping_rates(beam.damping, angular), beam.in_the_world(translation))
+    # Tension stores energy without a loss.
+    bent = np.append((beam._of_stiffness(bending) / beam._bending(bending)) ** 2, np.ones(axial.size))
+    rates = damping_rates(beam.damping, angular, beam.material.loss_factor * bent)
+    return Modes(angular, rates, beam.in_the_world(translation))
 
 
 @lru_cache(maxsize=4)

@@ -482,7 +482,9 @@ def _modes(plate: ModalPlate) -> Modes:
     moved = sheet.amplitudes * [_mean_of_sine(along) * (across == 0), _mean_of_sine(across) * (along == 0)]
     translation[0, len(m) :] = math.sqrt(plate.total_mass) * (np.array(plate.track_line.tangent) @ moved)
     angular = 2.0 * np.pi * np.concatenate([plate._frequency(m, n), sheet.frequency])
-    return Modes(angular, damping_rates(plate.damping, angular), plate.in_the_world(translation))
+    return Modes(
+        angular, damping_rates(plate.damping, angular, plate.material.loss_factor), plate.in_the_world(translation)
+    )
 
 
 def _mean_of_sine(half_waves: Array) -> Array:

@@ -136,12 +136,13 @@ def _is_definite(matrix: Array) -> bool:
     return True
 
 
-def modes_of(found: SparseReduction, damping: Any, translation: Array) -> Modes:
-    """Return modes with their damping; residual shapes have none."""
+def modes_of(found: SparseReduction, damping: Any, translation: Array, loss_factor: float | Array = 0.0) -> Modes:
+    """Return modes with their damping and the loss factors of their materials; residual shapes have none."""
     angular = found.angular_frequency
     massless = np.isinf(angular)
     check_damping_count(damping, int((~massless).sum()))
-    rates = np.append(damping_rates(damping, angular[~massless]), np.zeros(int(massless.sum())))
+    lost = np.broadcast_to(loss_factor, angular.shape)[~massless]
+    rates = np.append(damping_rates(damping, angular[~massless], lost), np.zeros(int(massless.sum())))
     return Modes(angular, rates, translation)
 
 

@@ -22,6 +22,7 @@ from ..cards import HasCard
 from ..damping import DampingLaw, checked_damping, damping_rates
 from ..drawn_surfaces import DrawnRings, DrawnSurface
 from ..long_searches import search_told
+from ..losses import losses_of, one_loss, with_losses
 from ..modes import Modes, hashed_once
 from ..points import BodyPoint, CircularPath
 from ..sections import Material
@@ -508,6 +509,25 @@ def _outline(mesh: ProfileMesh) -> tuple[Array, Array]:
     return used, sides.reshape(-1, 2)
 
 
+def _losses(body: AxisymmetricBody, elements: FourierElements, found: list[Family]) -> list[Array]:
+    """Return the loss factors of the shapes of each family."""
+    from .fourier_elements import fourier_elements
+
+    materials = [body.materials[name] for name in body.mesh.regions]
+    same = one_loss(materials)
+    if same is not None:
+        return [np.full(one.squared.size, same) for one in found]
+    stiffened = fourier_elements(body.mesh, with_losses(materials))
+    return [
+        losses_of(
+            elements.stiffness_of(one.kind.order),
+            stiffened.stiffness_of(one.kind.order),
+            one.shapes.reshape(3 * elements.count, -1),
+        )
+        for one in found
+    ]
+
+
 @lru_cache(maxsize=16)
 def _solution(body: AxisymmetricBody) -> _Solution:
     # Damping and orientation have no influence on the shapes.
@@ -515,6 +535,7 @@ def _solution(body: AxisymmetricBody) -> _Solution:
     elements = _elements(plain)
     with search_told(body, 3 * elements.count * (body._highest_order + 1)):
         found = _families(plain)
+    losses = _losses(body, elements, found)
     rows = [
         (squared, one.kind.order, one.kind.sides[0], index, number)
         for number, one in enumerate(found)
@@ -533,7 +554,9 @@ def _solution(body: AxisymmetricBody) -> _Solution:
     shapes = np.stack([found[number].shapes[:, :, index] for *_, index, number in rows], axis=2)
     angular = np.sqrt(squares)
     rates = np.zeros(angular.size)
-    rates[np.isfinite(angular)] = damping_rates(body.damping, angular[np.isfinite(angular)])
+    lost = np.array([losses[number][index] for *_, index, number in rows])[columns]
+    moving = np.isfinite(angular)
+    rates[moving] = damping_rates(body.damping, angular[moving], lost[moving])
     turning = _turning(body, np.array(numbers), angular, np.array(lags)[columns]) if body.turning else None
     modes = Modes(angular, rates, np.array(translation).T, turning=turning)
     solution = _Solution(elements, modes, np.array(numbers), np.array(columns), shapes)

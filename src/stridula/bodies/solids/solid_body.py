@@ -27,6 +27,7 @@ from ..damping import DampingLaw, checked_damping
 from ..drawn_surfaces import DrawnSurface
 from ..limits import LARGEST_SIZE, LARGEST_SPARSE, check_size
 from ..long_searches import search_told
+from ..losses import losses_of, one_loss, with_losses
 from ..matrix_input import check_finite, numbers
 from ..modes import Modes
 from ..named_points import NamedPoints
@@ -439,6 +440,17 @@ def _assembled(body: SolidBody) -> tuple[Any, Any]:
     return assembled(mesh.element_kind, mesh.nodes, mesh.elements, materials)
 
 
+def _losses(body: SolidBody, stiffness: Any, shapes: Array) -> float | Array:
+    """Return the loss factor of each mode, or that of all."""
+    mesh = body.mesh
+    materials, elements = zip(*_elements_of(body.materials, mesh), strict=True)
+    same = one_loss(materials)
+    if same is not None:
+        return same
+    stiffer = list(zip(with_losses(materials), elements, strict=True))
+    return losses_of(stiffness, assembled(mesh.element_kind, mesh.nodes, mesh.elements, stiffer)[1], shapes)
+
+
 @lru_cache(maxsize=4)
 @of_ordinary_size("mesh and materials")
 def _reduced(body: SolidBody) -> SolidReduction:
@@ -479,7 +491,8 @@ def _searched(body: SolidBody) -> SolidReduction:
     shapes = np.zeros((free.size, found.angular_frequency.size))
     shapes[free] = found.shapes
     shapes.flags.writeable = False
-    return SolidReduction(modes_of(found, body.damping, pulled.T @ shapes), shapes, node_mass)
+    lost = _losses(body, stiffness, shapes)
+    return SolidReduction(modes_of(found, body.damping, pulled.T @ shapes, lost), shapes, node_mass)
 
 
 @lru_cache(maxsize=4)
