@@ -132,3 +132,20 @@ def test_a_slip_beyond_the_table_is_noted():
     assert "slid at up to 0.2 m/s, but its friction was measured up to 0.05 m/s" in notes
     inside = on_a_belt(st.TabulatedFriction([0.0, 0.01, 0.5], [0.5, 0.4, 0.3]), belt=0.2)
     assert "measured" not in st.simulate(inside, 0.01).attrs["notes"]
+
+
+@pytest.mark.parametrize("law", [st.TabulatedFriction([0.0, 0.02, 0.1], [0.5, 0.4, 0.35]), Polymer(0.3, 0.1, 0.05)])
+@pytest.mark.parametrize("rate", [{}, {"surface_rate": "all"}])
+def test_a_face_under_measured_friction_slides_on_its_curve(law, rate):
+    """In space, with the points of a face solved together, recorded as a face or point by point."""
+    lining = st.Material(1e9, 2000.0, 0.3)
+    pad = st.SolidBody.block((0.06, 0.02, 0.03), (4, 1, 2), lining, cutoff=2e4, damping=0.3, contact_faces=["bottom"])
+    face = st.SurfaceContact(pad, "bottom", st.RigidTrack(velocity=0.3), friction=law, stiffness=2e11, name="lining")
+    held = [st.Spring(pad.at("top"), stiffness=1e6, direction=way) for way in "xz"]
+    system = st.System([face], [st.Force(pad.at("top"), y=-500.0), st.InitialEquilibrium()], held)
+    run = st.simulate(system, 4e-3, **rate)
+    last = run.isel(time=-1)
+    pushed = float(last["tangential_force"].sel(tangent="first").sum())
+    assert abs(pushed) / float(last["normal_force"].sum()) == pytest.approx(float(law.coefficient_at(0.3)), rel=1e-3)
+    beyond = "slid at up to 0.3 m/s, but its friction was measured up to 0.1 m/s"
+    assert (beyond in run.attrs["notes"]) == isinstance(law, st.TabulatedFriction)

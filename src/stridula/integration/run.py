@@ -235,8 +235,11 @@ class Run:
         return self._notes_of_speeds(pressed) if "slip_velocity" in self.wanted else []
 
     def _notes_of_speeds(self, pressed: Array) -> list[str]:
-        """Return a note on the contact that slid farthest beyond the speeds at which its friction was measured."""
-        measured = np.array([contact.friction.fastest for contact in self.system.contacts])
+        """Return a note on what slid farthest beyond the speeds of its measured friction, faces as a whole."""
+        system, surfaces = self.system, self.surfaces
+        names = system.contact_names if surfaces is None else surfaces.names
+        numbers = range(len(names)) if surfaces is None else surfaces.shown
+        measured = np.array([system.contacts[number].friction.fastest for number in numbers])
         if not pressed.size or not np.isfinite(measured).any():
             return []
         columns = [at.SLIP_VELOCITY, *([at.SLIP_VELOCITY_B] if self.system.has_two_tangents else [])]
@@ -245,9 +248,8 @@ class Run:
         farthest = int(np.argmax(speeds / measured))
         if speeds[farthest] <= measured[farthest]:
             return []
-        name = self.system.contact_names[farthest]
         return [
-            f"{name} slid at up to {speeds[farthest]:.3g} m/s, but its friction was measured up to "
+            f"{names[farthest]} slid at up to {speeds[farthest]:.3g} m/s, but its friction was measured up to "
             f"{measured[farthest]:.3g} m/s and is taken as constant beyond"
         ]
 
