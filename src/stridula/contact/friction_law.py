@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError
+from ..checks import ArgumentError, in_one_line
 from ..declared import check_declared
 from .curves import Curve, of_formula
 from .linearised import Linearised
@@ -184,5 +184,5 @@ def _tried(law: FrictionLaw, velocities: Array) -> Array:
         return np.asarray(np.broadcast_to(values, velocities.shape))
     except Exception as error:
         allowed = "take an array of velocities and return an array of coefficients"
-        got = f"{type(error).__name__}: {error}"
+        got = f"{type(error).__name__}: {in_one_line(error)}"
         raise ArgumentError("coefficient_at", allowed, got=got, where=type(law).__name__) from error
