@@ -166,6 +166,9 @@ FITTED = [
 ]
 
 
+LIKE = [(st.Stribeck, {}), (st.LuGre, {"stiffness": 1e5})]
+
+
 @pytest.mark.parametrize("law", FITTED, ids=lambda law: law.law)
 def test_a_fit_finds_the_law_that_made_the_data(law):
     speeds = np.geomspace(1e-3, 2.0, 25)
@@ -173,6 +176,13 @@ def test_a_fit_finds_the_law_that_made_the_data(law):
     fit = st.fit_friction(speeds, law.coefficient_at(speeds), type(law), **given)
     np.testing.assert_allclose(fit.law.coefficient_at(speeds), law.coefficient_at(speeds), rtol=1e-7)
     assert fit.error < 1e-8
+
+
+def test_a_speed_of_zero_is_that_of_the_slowest_sliding():
+    """LuGre's curve is Stribeck's, also where the table begins at 0."""
+    plain, bristles = (st.fit_friction(SPEEDS, VALUES, law, **more) for law, more in LIKE)
+    assert bristles.error == pytest.approx(plain.error, rel=1e-6)
+    assert bristles.law.static == pytest.approx(plain.law.static, rel=1e-4)
 
 
 def test_a_fit_of_noisy_data_is_the_least_square():

@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, choice, finite
 from .coulomb import Coulomb
-from .friction_law import FrictionLaw
+from .friction_law import SLOWEST, FrictionLaw
 from .lugre import LuGre
 from .weakening import ExponentialWeakening, LinearWeakening, Stribeck
 
@@ -163,4 +163,5 @@ def _measured(velocity: Any, coefficient: Any) -> tuple[Array, Array]:
         raise ArgumentError("coefficient", "be 0 or above, and not all 0", float(measured.min()))
     if speed.max() == 0.0:
         raise ArgumentError("velocity", "not be all 0", velocity)
-    return speed, measured
+    # A speed of 0 is the slowest sliding: bristles that do not move have no force.
+    return np.maximum(speed, SLOWEST * speed.max()), measured
