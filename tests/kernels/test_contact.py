@@ -47,7 +47,7 @@ def coulomb(gap, slip, w, mu, last_slip=0.0):
     """The kernel's solve under Coulomb's law, of a contact that slid by `last_slip` in the step before."""
     laws = np.array([[mu] + [0.0] * (LAW_COLUMNS - 1)])
     before = Before(float(SLIDING if last_slip else SEPARATED), last_slip, last_slip, 0.0, 0.0, 0.0, 0.0)
-    free, law = Free(gap, slip, 0.0, Compliance(*w.ravel()), 0.0), Law(layout.COULOMB, laws, 0, mu)
+    free, law = Free(gap, slip, 0.0, Compliance(*w.ravel()), 0.0), Law(layout.COULOMB, laws, 0, mu, 0.0)
     return solve_contact(free, law, before, 1.0)
 
 

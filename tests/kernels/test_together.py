@@ -211,7 +211,7 @@ def misses_of_each(step, force, laws, carried, now):
     """Return how far forces are from those of each contact alone, relative to the largest, and the states found."""
     moved, misses, statuses = step.moved(force), [], set()
     for i in range(len(force)):
-        own = Law(laws[0][i], laws[1], i, float(laws[1][i, STATIC]))
+        own = Law(laws[0][i], laws[1], i, float(laws[1][i, STATIC]), 0.0)
         expected, status = alone(i, step, moved, force, own, carried, float(now[i, at.LET_GO]))
         misses.append(np.abs(force[i] - expected).max() / force[:, 0].max())
         statuses.add(status)

@@ -107,7 +107,7 @@ def test_reversals_are_of_second_order(frequency, friction, scheme):
 def test_the_previous_slip_decides_on_a_reversal():
     """Negative control: the same push on a contact that was open has friction of one sense for the whole step."""
     free = Free(-1e-3, -1e-3, 0.0, Compliance(1e-4, 0.0, 0.0, 1e-4), 0.0)
-    law = Law(layout.COULOMB, np.array([[0.3] + [0.0] * 7]), 0, 0.3)
+    law = Law(layout.COULOMB, np.array([[0.3] + [0.0] * 7]), 0, 0.3, 0.0)
     forces = []
     for status in (SLIDING, SEPARATED):
         before = Before(float(status), 2e-3, 2e-3, 0.0, 0.0, 0.0, 0.0)

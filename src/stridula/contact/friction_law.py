@@ -119,6 +119,10 @@ class FrictionLaw(ABC):
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]."""
 
+    def under(self, normal_force: float) -> FrictionLaw:
+        """Return the law about a normal force [N]."""
+        return self
+
     def linearised_at(self, velocity: float) -> Linearised:
         """Return the law linearised about steady sliding at `velocity` [m/s], not 0; by differences by default."""
         if not self.depends_on_speed:

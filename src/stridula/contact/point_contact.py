@@ -16,6 +16,7 @@ from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, instance, within, within_a_turn
 from ..declared import Angle, Distance, Each, Number, OneOrEach, Position, check_declared
 from .coulomb import Coulomb
+from .elastic import ElasticFriction, check_in_series
 from .friction_law import FrictionLaw
 from .laws import check_friction
 from .rigid_track import RigidTrack
@@ -68,6 +69,11 @@ class PointContact:
         its axis while its vibration is described in a frame at rest: along the tangent, in space along both.
     stiffness : float, LinearStiffness, PowerStiffness or HertzStiffness, optional
         Contact stiffness, a number in N/m; rigid if left out.
+    tangential_stiffness : float, optional
+        Stiffness along the tangents [N/m], in series with the friction: the contact deforms before it slips. Rigid if
+        left out. For laws without an internal state that hold no more at rest than in the slowest sliding.
+    tangential_damping : float, optional
+        Damping along the tangents [N s/m], beside this stiffness.
     surface : str, optional
         Name of the surface that it is a point of; some points of a surface may be open in equilibrium.
     area : float, optional
@@ -89,6 +95,8 @@ class PointContact:
     tangent: Annotated[Sequence[float], Each(Number())] | None = None
     surface_velocity: Annotated[float | Sequence[float], OneOrEach(Number("m/s"))] = 0.0
     stiffness: ContactStiffness | float | None = None
+    tangential_stiffness: Annotated[float, Number("N/m", above=0.0)] | None = None
+    tangential_damping: Annotated[float, Number("N s/m", least=0.0)] = 0.0
     surface: str = ""
     area: Annotated[float, Number("m2", least=0.0)] = 0.0
 
@@ -113,6 +121,10 @@ class PointContact:
         if self.area and not self.surface:
             raise ArgumentError("area", "be left out except at a point of a surface", self.area)
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
+        if self.tangential_stiffness is not None:
+            check_in_series(self.friction, self.tangential_stiffness)
+        elif self.tangential_damping:
+            raise ArgumentError("tangential_damping", "be 0 without a tangential_stiffness", self.tangential_damping)
         self._check_directions()
 
     def _check_directions(self) -> None:
@@ -202,6 +214,13 @@ class PointContact:
         found: ContactStiffness | None = self.stiffness  # type: ignore[assignment]
         return found
 
+    @cached_property
+    def law(self) -> FrictionLaw:
+        """The law that acts: its friction, in series with its tangential stiffness if it has one."""
+        if self.tangential_stiffness is None:
+            return self.friction
+        return ElasticFriction(self.friction, self.tangential_stiffness, self.tangential_damping)
+
     @property
     def is_spatial(self) -> bool:
         """Whether one of the bodies is in space, so that there are two tangents."""
@@ -210,7 +229,7 @@ class PointContact:
     @property
     def has_state_vector(self) -> bool:
         """Whether the internal state of its friction law has a component along each of two tangents."""
-        return self.is_spatial and self.friction.state_is_vector
+        return self.is_spatial and self.law.state_is_vector
 
     @property
     def rigid_track(self) -> RigidTrack | None:

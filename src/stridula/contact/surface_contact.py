@@ -60,6 +60,11 @@ class SurfaceContact:
         Distance in addition to that of the geometry [m].
     stiffness : float, LinearStiffness, PowerStiffness or HertzStiffness, optional
         Contact stiffness per unit of area, a number in N/m³; rigid if left out.
+    tangential_stiffness : float, optional
+        Stiffness along the face per unit of area [N/m³], in series with the friction, such as that of a lining in
+        shear; rigid if left out.
+    tangential_damping : float, optional
+        Damping along the face per unit of area [N s/m³], beside this stiffness.
     tangent : sequence of float, optional
         World components of the first tangent; if left out, the direction in which the track turns or, if it does not,
         as for a `PointContact`.
@@ -90,6 +95,8 @@ class SurfaceContact:
     friction: FrictionLaw = field(default_factory=lambda: Coulomb(0.0))
     gap: Position = 0.0
     stiffness: ContactStiffness | float | None = None
+    tangential_stiffness: Annotated[float, Number("N/m3", above=0.0)] | None = None
+    tangential_damping: Annotated[float, Number("N s/m3", least=0.0)] = 0.0
     tangent: Annotated[Sequence[float], Each(Number())] | None = None
     overlay: bool = False
     name: str = "surface"
@@ -174,6 +181,8 @@ class SurfaceContact:
                 normal=tuple(facing.tolist()),
                 **self._directions(track, place, facing),
                 stiffness=None if self.stiffness is None else per_area(self.stiffness, area),  # type: ignore[arg-type]
+                tangential_stiffness=None if self.tangential_stiffness is None else area * self.tangential_stiffness,
+                tangential_damping=area * self.tangential_damping,
                 name=f"{self.name} {number + 1}",
                 surface=self.name,
                 area=area,

@@ -118,7 +118,7 @@ def closed_orbit(
 
 def _weigh(now: Return) -> None:
     """Give the internal states of friction laws the weight of the motion's energy."""
-    if any(contact.contact.friction.has_state for contact in now.vectors.arrays.contacts):
+    if any(contact.contact.law.has_state for contact in now.vectors.arrays.contacts):
         now.vectors.weigh_states(now.passed.friction_states, now.size**2)
 
 

@@ -47,7 +47,7 @@ class Belief:
         self.last_energies = energies.copy()
         self.largest_energy = max(largest_energy, float(np.abs(energies[: at.DAMPING_LOSS + 1]).max()))
         self.energy_of_loads = blocks.modes.energy_of_loads()
-        self.dissipative = not any(contact.friction.has_state for contact in system.contacts)
+        self.dissipative = not any(contact.law.has_state for contact in system.contacts)
         self.damped_alone = not arrays.coupled
 
     def of(self, chunk: Chunk, rows: Array | None = None, first: int = 0) -> tuple[int, int]:

@@ -131,6 +131,6 @@ def _force_of_one(
     slips, forces = (at.LAST_SLIP, at.EARLIER_SLIP), (at.LAST_NORMAL, at.LAST_TANGENTIAL)
     before = (at.STATUS, *slips, at.FRICTION_STATE, *forces, at.PAST_RATIO)
     free = Free(gap, slip, float(away), Compliance(*map(float, compliance.ravel())), 0.0)
-    law = Law(int(laws[0][0]), laws[1], 0, float(laws[1][0, STATIC]))
+    law = Law(int(laws[0][0]), laws[1], 0, float(laws[1][0, STATIC]), 0.0)
     touch = solve(free, law, Before(*(float(carried[one]) for one in before)), step)
     return np.array([[touch.normal, touch.tangential]])

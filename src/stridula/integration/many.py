@@ -297,7 +297,7 @@ def _turned(flat: Assembly) -> Hashable:
 
 
 def _law(one: ContactRows) -> Hashable:
-    return one.contact.friction.law, one.contact.friction.kernel_code
+    return one.contact.law.law, one.contact.law.kernel_code
 
 
 def _waves(one: ContactRows) -> Hashable:

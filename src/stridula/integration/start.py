@@ -160,8 +160,10 @@ class _Start:
         ratios, laws = np.full(self.speeds.shape, np.nan), self.contacts.laws
         for i, speeds in enumerate(self.speeds):
             whole = float(self.slip_speeds[i])
-            law = Law(int(self.contacts.codes[i]), laws, i, laws[i, STATIC])
-            if self.arrays.contacts[i].contact.has_state_vector:
+            law = Law(int(self.contacts.codes[i]), laws, i, laws[i, STATIC], 0.0)
+            if law.code == at.ELASTIC and not carried[i, FRICTION_STATE].any():
+                ratios[i] = 0.0
+            elif self.arrays.contacts[i].contact.has_state_vector:
                 states, velocity = Tangents(*carried[i, FRICTION_STATE]), Tangents(*speeds)
                 after = state_after(law, states, velocity, self.step)
                 middle = Tangents(*0.5 * (np.array(states) + np.array(after)))

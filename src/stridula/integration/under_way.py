@@ -184,8 +184,8 @@ class _Change:
         arrays, state, was = self._shifted(position), self.state, self.before.marched.system
         state.modal[at.D] = velocity * self.marched.step
         for own, before, now in zip(state.carried, was.contacts, self.marched.system.contacts, strict=True):
-            if type(now.friction) is not type(before.friction):
-                own[[at.FRICTION_STATE, at.FRICTION_STATE_B]] = now.friction.states_at_start
+            if type(now.law) is not type(before.law):
+                own[[at.FRICTION_STATE, at.FRICTION_STATE_B]] = now.law.states_at_start
         return self._put(arrays, blocks_of(arrays, self.marched.scheme, self.marched.step), state)
 
     def with_other_modes(self, position: Array, velocity: Array) -> UnderWay:

@@ -80,7 +80,7 @@ def start_of(system: System, asked: InitialEquilibrium) -> Start:
         position = position + shape.real
         velocity = velocity + (exponent * shape).real
         states = changes.real
-    laws = [contact.friction for contact in system.contacts]
+    laws = [contact.law.under(float(at.normal_force[k])) for k, contact in enumerate(system.contacts)]
     slips, ways = at.slip_velocity.tolist(), structure.ways.tolist()
     friction_state = [_states(*one) for one in zip(laws, slips, ways, states.tolist(), strict=True)]
     return Start(_closed(whole, at.status, position), velocity, np.array(friction_state), at.found, exponent)

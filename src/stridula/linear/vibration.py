@@ -155,8 +155,8 @@ class _Answer:
 
 def _answers(structure: Structure, equilibrium: Equilibrium, k: int, slip: Array) -> list[_Answer]:
     """Return the linearised friction of contact `k` across its slip, where it can move so, and along it."""
-    line, law = structure.lines[k], structure.system.contacts[k].friction
     speed, normal = abs(float(equilibrium.slip_velocity[k])), float(equilibrium.normal_force[k])
+    line, law = structure.lines[k], structure.system.contacts[k].law.under(normal)
     found = []
     if speed and equilibrium.status[k] == SLIDING and line.across.any():
         found.append(_Answer((k, True), law.linearised_across(speed), 1.0, normal, line.across, line.across))

@@ -139,7 +139,7 @@ def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:
         signals=signals,
         position=position,
         velocity=velocity,
-        friction_state=np.array([one.friction.states_at_start for one in system.contacts]),
+        friction_state=np.array([one.law.states_at_start for one in system.contacts]),
         probes=[],
         prescribed=prescribed_of(system, histories),
         spans={system.body_name(body): coordinates.spans[body] for body in system.bodies},

@@ -208,7 +208,7 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
     """Return the contacts as arrays for the march."""
     count = len(arrays.contacts)
     constants = np.zeros((count, at.CONTACT_CONSTANTS))
-    marched = [law_of_march(one.contact.friction) for one in arrays.contacts]
+    marched = [law_of_march(one.contact.law) for one in arrays.contacts]
     codes, laws = np.array([code for code, _ in marched]), np.array(of_one_width([row for _, row in marched]))
     rows = np.concatenate([contact.fixed for contact in arrays.contacts])
     first_rows = np.cumsum([0, *(len(contact.fixed) for contact in arrays.contacts)])

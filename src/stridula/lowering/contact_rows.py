@@ -110,7 +110,7 @@ def contact_rows(contact: PointContact, coordinates: Coordinates, turning: tuple
     fixed = frame @ coordinates.trace(contact.tip)[: len(frame)]
     if contact.touched_point is not None:
         fixed = fixed - frame @ coordinates.trace(contact.touched_point)[: len(frame)]
-    if contact.friction.depends_on_speed:
+    if contact.law.depends_on_speed:
         # Without mass nothing balances friction that falls with the slip speed.
         fixed[1:, coordinates.massless] = 0.0
     circle = None

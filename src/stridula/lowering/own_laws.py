@@ -68,7 +68,7 @@ def _differences(law: FrictionLaw) -> Iterator[tuple[str, str]]:
 def law_of_march(law: FrictionLaw) -> tuple[int, Array]:
     """Return the code of a law and its row of parameters."""
     code = CODES[law.kernel_code]
-    row = np.concatenate([np.zeros(LAW_COLUMNS), law.curve.flat if code == at.CURVE else []])
+    row = np.concatenate([np.zeros(LAW_COLUMNS), law.curve.flat if code in (at.CURVE, at.ELASTIC) else []])
     for name, value in law.parameters().items():
         row[PARAMETERS[law.kernel_code][name]] = value
     row[NEW_STATE] = law.state_at_landing
@@ -84,7 +84,7 @@ def of_one_width(rows: Sequence[Array]) -> list[Array]:
 def _in_march(law: FrictionLaw) -> Law:
     """Return a law as a contact of the march has it."""
     code, row = law_of_march(law)
-    return Law(code, row[None], 0, float(row[STATIC]))
+    return Law(code, row[None], 0, float(row[STATIC]), 1.0)
 
 
 def _ratio(law: FrictionLaw, march: Law, speed: float) -> float:

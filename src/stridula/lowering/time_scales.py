@@ -19,17 +19,22 @@ def fastest_vibration(arrays: Assembly, duration: float) -> float:
 
     All motions of lumped bodies are physical, unlike the highest modes below a cutoff: a squeal or an impact on a
     contact with a stiffness may have this frequency. Other bodies are held, except for their rigid motions. Contacts
-    are closed, with the stiffness under the largest force expected within `duration` [s].
+    are closed, with the stiffness under the largest force expected within `duration` [s], and stick where they have a
+    tangential stiffness.
     """
     lumped = np.flatnonzero(arrays.lumped)
     if not lumped.size:
         return 0.0
     rows = np.array([one.fixed[0, lumped] for one in arrays.contacts if one.yields is not None])
-    if not rows.size and not arrays.coupled:
+    joints = [(one.fixed[1:, lumped], one.contact.tangential_stiffness) for one in arrays.contacts]
+    joined = [(rows, stiffness) for rows, stiffness in joints if stiffness is not None]
+    if not rows.size and not joined and not arrays.coupled:
         return float(arrays.angular_frequency[lumped].max())
     stiffness = arrays.all_stiffness[np.ix_(lumped, lumped)]
     if rows.size:
         stiffness = stiffness + (rows.T * expected_stiffness(arrays, duration)) @ rows
+    for along, joint in joined:
+        stiffness = stiffness + joint * along.T @ along
     return float(np.sqrt(max(np.linalg.eigvalsh(0.5 * (stiffness + stiffness.T))[-1], 0.0)))
 
 

@@ -133,7 +133,7 @@ def over_time(
         if name in wanted:
             found[name] = (along, contact_columns[name].T.astype(np.int64))
     contacts = system.contacts if shown is None else [system.contacts[number] for number in shown]
-    units = [contact.friction.state_units for contact in contacts]
+    units = [contact.law.state_units for contact in contacts]
     if FRICTION_STATE.name in wanted and any(units):
         # NaN for contacts whose law has no state.
         kept = np.swapaxes(contact_columns[FRICTION_STATE.name], 0, 1).copy()
@@ -158,7 +158,7 @@ def _of_the_one_contact(dimensions: tuple[str, ...], values: Array) -> tuple[tup
 
 
 def _units_of_states(system: System) -> list[str]:
-    return [contact.friction.state_units for contact in system.contacts]
+    return [contact.law.state_units for contact in system.contacts]
 
 
 def _attributes(name: str, system: System) -> dict[str, Any]:

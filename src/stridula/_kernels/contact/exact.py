@@ -8,7 +8,7 @@ from ..lanes.operations import Number, Pair, choose, magnitude
 from ..layout import columns as at
 from ..layout.contact_values import Before, Compliance, Free, Law, Touch
 from ..layout.laws import STATIC
-from .friction import set_valued, sliding_ratio, sticking_speed
+from .friction import counts_as_sticking, joint_of, set_valued, sliding_ratio, under
 from .slipping import SEPARATED, SLIDING, STICKING, ratio_over_step, ratio_with_state
 
 # Most evaluations of the ratio for the normal force, those before it is sought by bisection, and the relative change of
@@ -49,14 +49,15 @@ def ratio_under(normal: Number, free: Free, law: Law, before: Before, step: Numb
 
     Under a law with internal state nothing sticks, however slowly it creeps. See `slipping`.
     """
-    slip, w = free.slip, free.w
+    slip, w, law = free.slip, free.w, under(law, normal)
     if set_valued(law.code):
         ratio, past, status, stuck = ratio_over_step(normal, free, law, before, step)
         return ratio, past, before.state, status, stuck
     ratio, past, state = ratio_with_state(normal, slip, w, law, before, step)
     moved = slip + (w.tn - ratio * w.tt) * normal
-    slow = abs(moved) < step * sticking_speed(law)
-    return ratio, past, state, STICKING if slow else SLIDING, 0.0
+    stiffness, damping = joint_of(law)
+    sticks = counts_as_sticking(law, abs(moved) / step, abs(stiffness * state + damping * moved / step))
+    return ratio, past, state, STICKING if sticks else SLIDING, 0.0
 
 
 @strict

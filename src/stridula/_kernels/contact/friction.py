@@ -20,6 +20,8 @@ from ..layout.laws import (
     EXPONENT,
     FIRST_SPEED,
     FLOOR,
+    JOINT_DAMPING,
+    JOINT_STIFFNESS,
     KINETIC,
     ORDER,
     PIECES,
@@ -33,11 +35,20 @@ from ..layout.laws import (
     VISCOUS,
 )
 
+# Normal force that stands for none [N]; share of the limit of friction from which it is reached but for rounding.
+LEAST_FORCE, FULL = 1e-200, 1.0 - 1e-9
+
 
 @strict
 def set_valued(code: int) -> bool:
     """Return whether the law of a code sticks exactly."""
     return SET_VALUED[code]
+
+
+@strict_pasted
+def under(law: Law, normal: Number) -> Law:
+    """Return a law with the normal force at which its ratio is evaluated."""
+    return Law(law.code, law.table, law.row, law.at_rest, normal)
 
 
 @strict
@@ -65,7 +76,7 @@ def sliding_ratio(law: Law, speed: Number) -> Number:
         powered = share if exponent == 1.0 else (share * share if exponent == 2.0 else share**exponent)
         weakened = (table[row, STATIC] - table[row, KINETIC]) * math.exp(-powered)
         return table[row, KINETIC] + weakened + table[row, VISCOUS] * speed
-    if law.code == at.CURVE:
+    if law.code == at.CURVE or law.code == at.ELASTIC:
         return curve_at(law, speed)[0]
     return max(table[row, STATIC] - table[row, SLOPE] * speed, table[row, FLOOR])
 
@@ -107,10 +118,30 @@ def speed_scale(law: Law, state: Number) -> Number:
         return table[row, END]
     if law.code == at.STRIBECK or law.code == at.LUGRE:
         return table[row, VELOCITY]
-    if law.code == at.CURVE:
+    if law.code == at.CURVE or law.code == at.ELASTIC:
         return curve_at(law, 0.0)[2]
     # a asinh(V / w): w = 2 V0 exp(-(reference + b ln(V0 theta / D)) / a), kept above the smallest numbers.
     return 2.0 * table[row, REFERENCE_VELOCITY] * math.exp(-min(ageing(law, state), 600.0))
+
+
+@strict_pasted
+def joint_of(law: Law) -> Pair:
+    """Return stiffness [1/m] and damping [s/m] of the joint in series with the friction, for its normal force."""
+    normal = max(law.normal, LEAST_FORCE)
+    return law.table[law.row, JOINT_STIFFNESS] / normal, law.table[law.row, JOINT_DAMPING] / normal
+
+
+@strict_pasted
+def deflected(law: Law, deflection: Number, ratio: Number, stage: Number, time: Number) -> Number:
+    """Return the deflection of a joint after some time at its rate in a stage, which ends with a ratio."""
+    stiffness, damping = joint_of(law)
+    return deflection + time * (ratio - stiffness * deflection) / (stiffness * stage + damping)
+
+
+@strict_pasted
+def within(ratio: Number, most: Number) -> Number:
+    """Return a ratio, or the limit that it exceeds."""
+    return min(max(ratio, -most), most)
 
 
 @strict_pasted
@@ -153,6 +184,8 @@ def next_state(law: Law, state: Number, velocity: Number, step: Number) -> Numbe
     if law.code == at.LUGRE:
         kept, share, _, _, _ = bristles_over(law, speed, step)
         return state * kept + velocity * step * share
+    if law.code == at.ELASTIC:
+        return deflected(law, state, ratio_after(law, state, velocity, step)[0], step, step)
     turned = speed * step / table[row, SLIP_DISTANCE]
     if law.code == at.AGING:
         share = 1.0 - 0.5 * turned if turned < 1e-8 else -math.expm1(-turned) / turned
@@ -175,6 +208,9 @@ def state_ratio(law: Law, state: Number, velocity: Number) -> Number:
             + table[row, BRISTLE_DAMPING] * rate
             + table[row, BRISTLE_VISCOUS] * velocity
         )
+    if law.code == at.ELASTIC:
+        stiffness, damping = joint_of(law)
+        return within(stiffness * state + damping * velocity, sliding_ratio(law, speed))
     if velocity == 0.0:
         return 0.0
     exponent = ageing(law, state) + math.log(speed / (2.0 * table[row, REFERENCE_VELOCITY]))
@@ -213,6 +249,13 @@ def ratio_after(law: Law, state: Number, velocity: Number, time: Number) -> Pair
         return ratio, table[row, BRISTLE_STIFFNESS] * new_slope + table[row, BRISTLE_DAMPING] * rate_slope + table[
             row, BRISTLE_VISCOUS
         ]
+    if law.code == at.ELASTIC:
+        stiffness, damping = joint_of(law)
+        firm, (most, slope, _) = stiffness * time + damping, curve_at(law, speed)
+        ratio = stiffness * state + firm * velocity
+        if abs(ratio) <= most:
+            return ratio, firm
+        return math.copysign(most, ratio), slope * math.copysign(1.0, ratio) * math.copysign(1.0, velocity)
     turned = speed * time / table[row, SLIP_DISTANCE]
     new, new_slope = state, 0.0
     if law.code == at.AGING:
@@ -236,7 +279,12 @@ def ratio_after(law: Law, state: Number, velocity: Number, time: Number) -> Pair
 
 
 @strict
-def sticking_speed(law: Law) -> Number:
-    """Return the slip speed below which a law with internal state counts as sticking."""
+def counts_as_sticking(law: Law, speed: Number, felt: Number) -> bool:
+    """Return whether a contact under a law with internal state counts as sticking, at a slip speed.
+
+    In series with a joint it does while the ratio `felt`, that of the joint alone, is below the limit.
+    """
     table, row = law.table, law.row
-    return table[row, VELOCITY] if law.code == at.LUGRE else table[row, REFERENCE_VELOCITY]
+    if law.code == at.ELASTIC:
+        return felt < FULL * sliding_ratio(law, speed)
+    return speed < (table[row, VELOCITY] if law.code == at.LUGRE else table[row, REFERENCE_VELOCITY])

@@ -62,7 +62,8 @@ def _in_lane(kind: Any, value: str) -> str | None:
     if isinstance(kind, types.BaseNamedTuple) and kind.instance_class is Law:
         # The parameters of each run have a row.
         at_rest = _in_lane(kind[Law._fields.index("at_rest")], f"{value}.at_rest")
-        return f"Law({value}.code, {value}.table, {value}.row + i, {at_rest})"
+        normal = _in_lane(kind[Law._fields.index("normal")], f"{value}.normal")
+        return f"Law({value}.code, {value}.table, {value}.row + i, {at_rest}, {normal})"
     return None if isinstance(kind, types.BaseTuple) else value
 
 

@@ -9,7 +9,7 @@ from ..layout import columns as at
 from ..layout.contact_values import BeforeInSpace, ComplianceInSpace, FreeInSpace, Law, Tangents, TouchInSpace
 from ..layout.laws import NEW_STATE, STATIC
 from .exact import PATIENCE, ROUND_OFF, SLIDING, STICKING, TRIALS, velocity_at
-from .friction import set_valued, sliding_ratio, sticking_speed
+from .friction import counts_as_sticking, joint_of, set_valued, sliding_ratio, under
 from .lanewise import lanewise
 from .slipping_in_space import ratio_over_step, ratio_with_state, sticking_forces
 from .tangents import NOTHING, along, over, plus, scaled, size_of, to_normal
@@ -27,15 +27,17 @@ def ratio_under(normal: float, free: FreeInSpace, law: Law, before: BeforeInSpac
 
     As `contact.ratio_under`.
     """
-    slips, w = free.slips, free.w
+    slips, w, law = free.slips, free.w, under(law, normal)
     if set_valued(law.code):
         ratio, past, status, stuck = ratio_over_step(normal, free, law, before, step)
         return ratio, past, before.state, status, stuck
     ratio, past, states = ratio_with_state(normal, slips, w, law, before, step)
     per_normal = Tangents(w.an - w.aa * ratio.a - w.ab * ratio.b, w.bn - w.ba * ratio.a - w.bb * ratio.b)
     moved = plus(slips, normal, per_normal)
-    slow = size_of(moved) < step * sticking_speed(law)
-    return ratio, past, states, STICKING if slow else SLIDING, 0.0
+    stiffness, damping = joint_of(law)
+    felt = plus(scaled(stiffness, states), damping / step, moved)
+    sticks = counts_as_sticking(law, size_of(moved) / step, size_of(felt))
+    return ratio, past, states, STICKING if sticks else SLIDING, 0.0
 
 
 @strict
@@ -128,7 +130,7 @@ def next_in_space(
     normal, status = touch
     if status < 0.5:
         fresh = law.table[law.row, NEW_STATE]
-        return NOTHING, Tangents(fresh, fresh if law.code == at.LUGRE else 0.0), 0.0
+        return NOTHING, Tangents(fresh, 0.0 if law.code == at.AGING or law.code == at.SLIP else fresh), 0.0
     if law.code == at.COULOMB or is_prescribed(law, free.w):
         return NOTHING, before.state, 1.0 if status == STICKING else 0.0
     _, past, states, _, stuck = ratio_under(normal, free, law, before, step)

@@ -14,7 +14,18 @@ from ..lanes.operations import Number, Numbers, Pair
 from ..layout import columns as at
 from ..layout.contact_values import Before, Compliance, Drive, Free, Law
 from ..layout.laws import BRISTLE_STIFFNESS, FLOOR, KINETIC, SLIP_DISTANCE, SLOPE, STATIC, VELOCITY, VISCOUS
-from .friction import curve_at, holding_ratio, next_state, ratio_after, sliding_ratio, speed_scale, state_ratio
+from .friction import (
+    curve_at,
+    deflected,
+    holding_ratio,
+    joint_of,
+    next_state,
+    ratio_after,
+    sliding_ratio,
+    speed_scale,
+    state_ratio,
+    within,
+)
 
 # A contact that stopped slid in this step and is at rest at its end: the next step finds it sticking.
 SEPARATED, STICKING, SLIDING, STOPPED = 0, 1, 2, 3
@@ -22,6 +33,8 @@ SEPARATED, STICKING, SLIDING, STOPPED = 0, 1, 2, 3
 MOST_PARTS, REVERSALS = 64, 3
 # Bend of the law in a part; phase of bristles in a part; ageing in a part.
 PART, PHASE, AGEING = 0.5, 0.25, 1.0
+# Most deflections of a joint that divide the slip of a step.
+REACHES = 8.0
 # First stage of the implicit rule, as a share of a part.
 STAGE = 1.0 - math.sqrt(0.5)
 # What the growth of the drive adds to the slip of that stage, so that the mean of the stages is that of the drive.
@@ -250,7 +263,11 @@ def velocity_after(free: Number, pulled: Number, guess: Number, law: Law, state:
 def parts_with_state(slip: Number, drive: Number, pull: Number, law: Law, step: Number) -> int:
     """Return the number of parts of the way under a law with internal state."""
     table, row = law.table, law.row
-    if law.code == at.LUGRE:
+    if law.code == at.ELASTIC:
+        stiffness, _ = joint_of(law)
+        passed = (abs(slip) + abs(drive)) * stiffness / max(sliding_ratio(law, 0.0), 1e-9)
+        count = 1.0 + max(math.sqrt(pull * stiffness) / PHASE, min(passed, REACHES))
+    elif law.code == at.LUGRE:
         change = (abs(drive) + pull * table[row, STATIC]) / (4.0 * table[row, VELOCITY] * step)
         count = 1.0 + max(math.sqrt(pull * table[row, BRISTLE_STIFFNESS]) / PHASE, change)
     else:
@@ -281,14 +298,14 @@ def ratio_with_state(normal: Number, slip: Number, w: Compliance, law: Law, befo
     was, last, state, past = before.status, before.slip, before.state, before.past
     pull, moved = w.tt * normal, slip + w.tn * normal
     begun, drive, grows = 0.5 * (last + moved), moved - last, 0.0
+    elastic = law.code == at.ELASTIC
     if was == SEPARATED:
         past = 0.5 * state_ratio(law, state, begun / step)
     elif before.normal > 0.0:
-        grows = (
-            drive
-            - (last - before.earlier_slip)
-            - w.tt * changed_to(normal, before.normal) * before.tangential / before.normal
-        )
+        # The force of a joint does not change with the normal force.
+        share = 1.0 if elastic else changed_to(normal, before.normal) / before.normal
+        grows = drive - (last - before.earlier_slip) - w.tt * share * before.tangential
+        past = past * before.normal / normal if elastic else past
     slip_now = begun - pull * past - grows / 6.0
     count = parts_with_state(slip_now, drive, pull, law, step)
     size, later, rest, velocity = 1.0 / count, 0.0, 0.0, slip_now / step
@@ -298,7 +315,11 @@ def ratio_with_state(normal: Number, slip: Number, w: Compliance, law: Law, befo
         driven = drive + grows * begin
         free = slip_now + size * (STAGE * driven + GROWTH_AT_STAGE * size * grows)
         velocity, first = velocity_after(free / step, pulled, velocity, law, state, time)
-        state = next_state(law, state, velocity, size * step - time)
+        rest_of_part = size * step - time
+        if elastic:
+            state = deflected(law, state, first, time, rest_of_part)
+        else:
+            state = next_state(law, state, velocity, rest_of_part)
         free = slip_now + size * (driven + 0.5 * size * grows - (1.0 - STAGE) * pull * first)
         velocity, second = velocity_after(free / step, pulled, velocity, law, state, time)
         state = next_state(law, state, velocity, time)
@@ -306,4 +327,7 @@ def ratio_with_state(normal: Number, slip: Number, w: Compliance, law: Law, befo
         more = (1.0 - STAGE) * (2.0 * STAGE * size + left) * first + STAGE * (STAGE * size + left) * second
         later, rest = later + size * more, rest + size * ((1.0 - STAGE) * first + STAGE * second - more)
         slip_now = velocity * step
+    if elastic:
+        most = max(sliding_ratio(law, abs(begun) / step), sliding_ratio(law, abs(velocity)))
+        return within(past + later, most), rest, state
     return past + later, rest, state

@@ -24,7 +24,9 @@ from ..layout.laws import BRISTLE_DAMPING, BRISTLE_STIFFNESS, BRISTLE_VISCOUS
 from .friction import (
     bristle_limit,
     bristles_over,
+    deflected,
     holding_ratio,
+    joint_of,
     next_state,
     ratio_after,
     sliding_ratio,
@@ -71,6 +73,8 @@ ROUNDING = 1e-9
 MOST_TURNS = 16
 # Trials of a search for a speed, and its relative accuracy.
 TRIALS, SETTLED = 200, 1e-15
+# Size of a ratio relative to its limit that is reached but for rounding.
+AT_LIMIT = 1e-14
 # Trials of such a search of which the last takes the middle of its bracket.
 UNTRUSTED = 8
 # Slip relative to the limit deflection of bristles below which what they take up is computed by its series.
@@ -426,10 +430,39 @@ def moved_at(
     speed: Number, free: Tangents, pull: Matrix, law: Law, state: Tangents, time: Number
 ) -> tuple[Tangents, Tangents]:
     """Return the slip velocity that follows from an assumed speed, and the ratios."""
+    if law.code == at.ELASTIC:
+        return moved_at_joint(speed, free, pull, law, state, time)
     holds, drags = friction_after(law, state, speed, time)
     kept = scaled(holds, state)
     velocity = solved(stiffened(1.0, drags, pull), plus(free, -1.0, times(pull, kept)))
     return velocity, plus(kept, drags, velocity)
+
+
+@strict
+def moved_at_joint(
+    speed: Number, free: Tangents, pull: Matrix, law: Law, state: Tangents, time: Number
+) -> tuple[Tangents, Tangents]:
+    """Do `moved_at` for friction in series with a joint.
+
+    Beyond the limit the ratio r has its size, and what the joint alone would have in addition is along it: with the
+    matrix ``A`` of the joint, ``(A + share) r`` is what it has without friction; Newton's method for the share.
+    """
+    stiffness, damping = joint_of(law)
+    firm, most = stiffness * time + damping, sliding_ratio(law, speed)
+    felt, matrix = plus(scaled(stiffness, state), firm, free), stiffened(1.0, firm, pull)
+    ratio, share = solved(matrix, felt), 0.0
+    for _ in range(TRIALS):
+        size = size_of(ratio)
+        if size <= most * (1.0 + AT_LIMIT):
+            break
+        if most == 0.0:
+            ratio = NOTHING
+            break
+        # The inverse of the size is concave over the share, nearly straight: it is approached from below.
+        slope = along(ratio, solved(stiffened(share, 1.0, matrix), ratio)) / (size * size)
+        share += (size / most - 1.0) / slope
+        ratio = solved(stiffened(share, 1.0, matrix), felt)
+    return plus(free, -1.0, times(pull, ratio)), ratio
 
 
 @strict_pasted
@@ -447,7 +480,7 @@ def velocity_after(
     At a given speed the law is linear in the velocity; the speed sought is that which results: the secant method within
     a bracket. The scale of rate and state is ``sinh(y)``, so that creep and sliding share one.
     """
-    scale, logarithmic = speed_scale(law, state.a), law.code != at.LUGRE
+    scale, logarithmic = speed_scale(law, state.a), law.code == at.AGING or law.code == at.SLIP
     speed = guess
     if not speed > 0.0:
         velocity, ratio = moved_at(0.0, free, pull, law, state, time)
@@ -480,13 +513,36 @@ def velocity_after(
 
 
 @strict_pasted
+def shortened(ratio: Tangents, most: Number) -> Tangents:
+    """Return a ratio, or one of the size that it exceeds along it."""
+    size = size_of(ratio)
+    return scaled(most / size, ratio) if size > most else ratio
+
+
+@strict_pasted
 def state_after(law: Law, state: Tangents, velocity: Tangents, time: Number) -> Tangents:
     """Return the internal states after some time at a constant slip velocity, exactly."""
     speed = size_of(velocity)
     if law.code == at.LUGRE:
         kept, share, _, _, _ = bristles_over(law, speed, time)
         return plus(scaled(kept, state), time * share, velocity)
+    if law.code == at.ELASTIC:
+        stiffness, damping = joint_of(law)
+        firm, held = stiffness * time + damping, scaled(stiffness, state)
+        ratio = shortened(plus(held, firm, velocity), sliding_ratio(law, speed))
+        return plus(state, time / firm, plus(ratio, -1.0, held))
     return Tangents(next_state(law, state.a, speed, time), state.b)
+
+
+@strict_pasted
+def state_between(
+    law: Law, state: Tangents, velocity: Tangents, ratio: Tangents, stage: Number, time: Number
+) -> Tangents:
+    """Do `state_after` from the beginning of a stage to that of the next one; a joint has the rate of the stage."""
+    if law.code == at.ELASTIC:
+        a = deflected(law, state.a, ratio.a, stage, time)
+        return Tangents(a, deflected(law, state.b, ratio.b, stage, time))
+    return state_after(law, state, velocity, time)
 
 
 @strict
@@ -499,6 +555,9 @@ def ratio_of_state(law: Law, state: Tangents, velocity: Tangents) -> Tangents:
         turned = plus(velocity, -speed / limit, state)
         bent = plus(scaled(table[row, BRISTLE_STIFFNESS], state), table[row, BRISTLE_DAMPING], turned)
         return plus(bent, table[row, BRISTLE_VISCOUS], velocity)
+    if law.code == at.ELASTIC:
+        stiffness, damping = joint_of(law)
+        return shortened(plus(scaled(stiffness, state), damping, velocity), sliding_ratio(law, speed))
     return scaled(state_ratio(law, state.a, speed), direction_of(velocity, ALONG_A))
 
 
@@ -513,12 +572,15 @@ def ratio_with_state(
     was, last, earlier, state, past = before.status, before.slip, before.earlier_slip, before.state, before.past
     pull, moved = scaled_matrix(normal, of_tangents(w)), plus(slips, normal, by_normal(w))
     begun, drive, grows = scaled(0.5, plus(last, 1.0, moved)), plus(moved, -1.0, last), NOTHING
+    elastic = law.code == at.ELASTIC
     if was == SEPARATED:
         past = scaled(0.5, ratio_of_state(law, state, over(begun, step)))
     elif before.normal > 0.0:
-        share = changed_to(normal, before.normal)
+        # The force of a joint does not change with the normal force.
+        share = 1.0 if elastic else changed_to(normal, before.normal) / before.normal
         dragged = times(scaled_matrix(share, of_tangents(w)), before.tangential)
-        grows = plus(plus(drive, -1.0, plus(last, -1.0, earlier)), -1.0, over(dragged, before.normal))
+        grows = plus(plus(drive, -1.0, plus(last, -1.0, earlier)), -1.0, dragged)
+        past = scaled(before.normal / normal, past) if elastic else past
     slip = plus(plus(begun, -1.0, times(pull, past)), -1.0 / 6.0, grows)
     squares = along(slip, slip) + along(drive, drive)
     pulled = 0.5 * (pull.aa + pull.bb)
@@ -532,7 +594,7 @@ def ratio_with_state(
         driven = plus(drive, begin, grows)
         free = plus(plus(slip, size * STAGE, driven), size * GROWTH_AT_STAGE * size, grows)
         velocity, first = velocity_after(over(free, step), matrix, speed, law, state, time)
-        state, speed = state_after(law, state, velocity, size * step - time), size_of(velocity)
+        state, speed = state_between(law, state, velocity, first, time, size * step - time), size_of(velocity)
         driven = plus(driven, 0.5 * size, grows)
         free = plus(plus(slip, size, driven), -size * (1.0 - STAGE), times(pull, first))
         velocity, second = velocity_after(over(free, step), matrix, speed, law, state, time)
@@ -540,4 +602,7 @@ def ratio_with_state(
         more, less = stage_moments(begin, size, first, second)
         later, rest = plus(later, 1.0, more), plus(rest, 1.0, less)
         slip = scaled(step, velocity)
+    if elastic:
+        most = max(sliding_ratio(law, size_of(begun) / step), sliding_ratio(law, speed))
+        return shortened(plus(past, 1.0, later), most), rest, state
     return plus(past, 1.0, later), rest, state

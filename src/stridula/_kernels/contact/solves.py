@@ -78,7 +78,7 @@ def turned_round(gap: Number, slip: Number, last_slip: Number, w: Compliance, mu
 def law_of(i: int, contacts: Contacts, runs: Runs) -> Law:
     """Return the law of contact `i`."""
     at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, runs)
-    return Law(contacts.codes[i], contacts.laws, i * runs.columns + runs.first, at_rest)
+    return Law(contacts.codes[i], contacts.laws, i * runs.columns + runs.first, at_rest, runs.zero)
 
 
 @inlined

@@ -57,12 +57,15 @@ class Law(NamedTuple):
         Row of this contact, that of the first of several runs.
     at_rest : number
         Ratio of forces up to which it may rest.
+    normal : number
+        Normal force at which its ratio is evaluated [N].
     """
 
     code: int
     table: Array
     row: int
     at_rest: Number
+    normal: Number
 
 
 class Free(NamedTuple):

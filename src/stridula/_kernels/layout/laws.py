@@ -14,6 +14,8 @@ BRISTLE_STIFFNESS, BRISTLE_DAMPING, BRISTLE_VISCOUS = range(3, 6)
 REFERENCE, DIRECT, EVOLVING, SLIP_DISTANCE, REFERENCE_VELOCITY = range(5)
 # A curve over the slip speed in pieces: their number, that of the coefficients of each, and the slope beyond the last.
 PIECES, ORDER, END_SLOPE = range(1, 4)
+# Behind those of a curve: the spring and the dashpot in series with the friction.
+JOINT_STIFFNESS, JOINT_DAMPING = range(4, 6)
 # State of a new contact.
 NEW_STATE = 7
 LAW_COLUMNS = 8
@@ -23,6 +25,7 @@ FIRST_SPEED = LAW_COLUMNS
 _WEAKENING = {"static": STATIC, "kinetic": KINETIC, "velocity": VELOCITY}
 _BRISTLES = {"stiffness": BRISTLE_STIFFNESS, "damping": BRISTLE_DAMPING, "viscous": BRISTLE_VISCOUS}
 _AGES = {"slip_distance": SLIP_DISTANCE, "velocity": REFERENCE_VELOCITY}
+_CURVE = {"static": STATIC, "pieces": PIECES, "order": ORDER, "end_slope": END_SLOPE}
 _RATE_AND_STATE = {"reference": REFERENCE, "a": DIRECT, "b": EVOLVING, **_AGES}
 PARAMETERS = {
     "COULOMB": {"coefficient": STATIC},
@@ -32,7 +35,8 @@ PARAMETERS = {
     "LUGRE": {**_WEAKENING, **_BRISTLES},
     "AGING": _RATE_AND_STATE,
     "SLIP": _RATE_AND_STATE,
-    "CURVE": {"static": STATIC, "pieces": PIECES, "order": ORDER, "end_slope": END_SLOPE},
+    "CURVE": _CURVE,
+    "ELASTIC": {**_CURVE, "stiffness": JOINT_STIFFNESS, "damping": JOINT_DAMPING},
 }
 CODES = {name: getattr(at, name) for name in PARAMETERS}
 # Whether a law sticks exactly, by its code.
