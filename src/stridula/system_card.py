@@ -75,7 +75,7 @@ def _touched(contact: Any, system: Any) -> str:
     other = "a rigid track" if contact.track_body is None else system.body_name(contact.track_body)
     where = f" at {contact.at:.4g} m" if contact.path_body is not None or contact.circle is not None else ""
     gap = f", gap {contact.gap:.3g} m" if abs(contact.gap) > CLOSED else ""
-    return f"{system.body_name(contact.tip.body)} on {other}{where}, friction {contact.friction}{gap}"
+    return f"{system.body_name(contact.tip.body)} on {other}{where}, friction {contact.law}{gap}"
 
 
 def _drive_words(drive: Any, system: Any) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -18,6 +19,15 @@ MEASURED = st.TabulatedFriction([0.0, 0.01, 0.02, 0.05, 0.1, 0.3], [0.5, 0.48, 0
 def oscillator(friction, belt=BELT, load=5.0, **changes) -> st.System:
     """A mass on a belt, held by a spring and a dashpot along x, pressed down: the textbook's stick-slip."""
     return Slider(0.4, 3e3, load, friction, dashpot=1.5).system(belt, **changes)
+
+
+def jointed(system: st.System, stiffness: float, damping: float = 0.0) -> st.System:
+    """The same with a joint along the tangents of each contact whose law has no state."""
+    contacts = [
+        one if one.friction.has_state else replace(one, tangential_stiffness=stiffness, tangential_damping=damping)
+        for one in system.contacts
+    ]
+    return replace(system, contact=contacts)
 
 
 def chain() -> st.System:
@@ -221,6 +231,8 @@ SYSTEMS = {
         lambda: oscillator(st.RateAndState(0.5, 0.015, 0.01, 1e-4, 1e-3, "slip", 0.3), inclination=-0.2),
         2e-4,
     ),
+    "mass on a belt, joint": (lambda: jointed(oscillator(st.Coulomb(0.6)), 1e4), 2e-4),
+    "mass on a belt, damped joint": (lambda: jointed(oscillator(WEAK), 2e4, 3.0), 2e-4),
     "chain on a belt": (chain, 2e-4),
     "pad on a shaken belt": (lambda: pad_on(SHAKEN, [st.Coulomb(0.4), WEAK, st.StaticKinetic(0.5, 0.3)]), 1e-4),
     "pad on a beam": (
@@ -230,6 +242,8 @@ SYSTEMS = {
         5e-6,
     ),
     "pad on a belt, bristles and age": (lambda: pad_on(BELT, [BRISTLES, AGING]), 1e-4),
+    "pad on a belt, joints and age": (lambda: jointed(pad_on(BELT, [st.Coulomb(0.4)] * 2 + [AGING]), 2e4, 1.0), 1e-4),
+    "slider, joint": (lambda: jointed(on_a_beam(st.ExponentialWeakening(1.2, 0.6, 0.05)), 1e7), 5e-6),
     "slider, exponential": (lambda: on_a_beam(st.ExponentialWeakening(1.2, 0.6, 0.05)), 5e-6),
     "slider, viscous": (lambda: on_a_beam(st.Stribeck(0.9, 0.5, 0.01, 0.8, 2.0), angle=40.0), 5e-6),
     "slider, bristles": (lambda: on_a_beam(st.LuGre(1.0, 0.7, 0.01, 1e5, 10.0)), 5e-6),

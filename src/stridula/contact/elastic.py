@@ -50,7 +50,7 @@ class ElasticFriction(FrictionLaw):
     @property
     def kernel_code(self) -> str:
         """Name of its constant in the layout of the march."""
-        return "ELASTIC"
+        return "IN_SERIES"
 
     @property
     def depends_on_speed(self) -> bool:  # type: ignore[override]

@@ -161,9 +161,10 @@ class _Start:
         for i, speeds in enumerate(self.speeds):
             whole = float(self.slip_speeds[i])
             law = Law(int(self.contacts.codes[i]), laws, i, laws[i, STATIC], 0.0)
-            if law.code == at.ELASTIC and not carried[i, FRICTION_STATE].any():
-                ratios[i] = 0.0
-            elif self.arrays.contacts[i].contact.has_state_vector:
+            if law.code == at.IN_SERIES:
+                # Its force is known, not the ratio.
+                continue
+            if self.arrays.contacts[i].contact.has_state_vector:
                 states, velocity = Tangents(*carried[i, FRICTION_STATE]), Tangents(*speeds)
                 after = state_after(law, states, velocity, self.step)
                 middle = Tangents(*0.5 * (np.array(states) + np.array(after)))
@@ -179,6 +180,14 @@ class _Start:
             elif whole:
                 ratios[i] = speeds / whole * sliding_ratio(law, whole)
         return ratios
+
+    def _forces_of_joints(self, carried: Array) -> Array:
+        """Return the tangential forces [N] of contacts in series with a joint, NaN for others."""
+        forces = np.full(self.speeds.shape, np.nan)
+        for i, one in enumerate(self.arrays.contacts):
+            if one.contact.tangential_stiffness is not None:
+                forces[i] = one.contact.tangential_stiffness * carried[i, FRICTION_STATE][: self.tangents]
+        return forces
 
     def carried(self, first: Array) -> Array:
         """Return the scalars of each contact after a first increment."""
@@ -225,6 +234,16 @@ class _Start:
                 compliance[n, n] += give
                 gap[i] = -(compliance[n, n]) * self.pressing[i]
         codes, laws = self.contacts.codes[closed], self.contacts.laws[closed]
+        joints = self._forces_of_joints(carried)[closed]
+        for i in np.flatnonzero(codes == at.IN_SERIES):
+            # A known force moves the contacts, and leaves one without friction.
+            n, end = first_rows[i : i + 2]
+            moved = -compliance[:, n + 1 : end] @ joints[i, : end - n - 1]
+            gap[closed] += moved[first_rows[:-1]]
+            for k in range(self.tangents):
+                has = self.counts[closed] > k
+                slip[closed[has], k] += moved[first_rows[:-1][has] + 1 + k]
+            codes[i], laws[i, STATIC] = at.COULOMB, 0.0
         ratios = self._known_ratios(carried)[closed]
         for i in np.flatnonzero(np.isfinite(ratios[:, 0])):
             # With a known ratio, the contact is equivalent to one without friction and with an inclined force.
@@ -241,6 +260,7 @@ class _Start:
         soft = np.array([self.arrays.contacts[i].yields is not None for i in closed])
         forces[:, 0] = np.where(soft, self.pressing[closed], forces[:, 0])
         forces[:, 1:] = np.where(np.isfinite(ratios), ratios * forces[:, :1], forces[:, 1:])
+        forces[:, 1:] = np.where(np.isfinite(joints), joints, forces[:, 1:])
         return forces
 
     def increment_of_rates(self, closed: Array, forces: Array) -> Array:

@@ -179,6 +179,8 @@ def at_statuses(
     if STICKING in status:
         loose = [SLIDING if one == STICKING else one for one in status]
         anchors = balance_of(structure, loose, nothing, nothing, anchors, nothing, exact, about).place
+        # Joints hold nothing where the system starts.
+        anchors[:, [contact.tangential_stiffness is not None for contact in structure.system.contacts]] = 0.0
     slip = _slip_velocities(structure, velocity, status)
     plain = balance_of(structure, status, np.sign(slip), nothing, anchors, slip, about=about)
     least = ROUND_OFF * largest_acceleration(structure)
@@ -307,6 +309,7 @@ class Equations:
         # The force of a sticking contact is that on the track, against the displacement.
         self.give = np.full(len(self.held), -soft)
         self.give[: len(self.closed)] = 0.0 if give is None else give[self.closed]
+        self.give[len(self.closed) :] -= [structure.joint_give(k) for k in (*self.stuck, *self.lateral)]
         self.free, self._kept = self._split()
         self._moved = self._pushed(self.response.compliance)
         self._pulled = self._pushed(self.response.pull)
@@ -439,9 +442,11 @@ def held_rows(structure: Structure, status: Sequence[str], share: Array) -> tupl
     return held, np.array([*normals, *(-row for row in tangents)]).reshape(size), closed, stuck
 
 
-def rigid_rows(structure: Structure, closed: Sequence[int], count: int) -> list[int]:
-    """Return the rows of `held_rows`, `count` in all, that are rigid: all but the normals of compliant contacts."""
-    return [row for row in range(count) if row >= len(closed) or structure.is_rigid(closed[row])]
+def rigid_rows(structure: Structure, closed: Sequence[int], stuck: Sequence[int]) -> list[int]:
+    """Return the rows of `held_rows` that are rigid: not normals of compliant contacts, nor tangents with a joint."""
+    along = [*stuck, *held_across(structure, stuck)]
+    rigid = [structure.is_rigid(k) for k in closed] + [structure.joint_give(k) == 0.0 for k in along]
+    return [row for row, one in enumerate(rigid) if one]
 
 
 def held_across(structure: Structure, stuck: Sequence[int]) -> list[int]:
@@ -458,8 +463,8 @@ def motions_held(structure: Structure, status: Sequence[str]) -> Array:
     """Return an orthonormal basis of the rows that rigid contacts and sticking ones hold, (held, modes)."""
 
     def find() -> Array:
-        held, _, closed, _ = held_rows(structure, status, np.zeros(len(status)))
-        held = held[rigid_rows(structure, closed, len(held))]
+        held, _, closed, stuck = held_rows(structure, status, np.zeros(len(status)))
+        held = held[rigid_rows(structure, closed, stuck)]
         return np.linalg.svd(_normalised(held), full_matrices=False)[2][: rank(held)]
 
     return structure.once(("held", *status), find)
@@ -499,8 +504,8 @@ def softness(structure: Structure, status: Sequence[str]) -> float:
 
 def _softness(structure: Structure, stuck: Sequence[int]) -> float:
     status = [STICKING if k in stuck else SLIDING for k in range(len(structure.lines))]
-    held, _, closed, _ = held_rows(structure, status, np.zeros(len(status)))
-    held = held[rigid_rows(structure, closed, len(held))]
+    held, _, closed, sticking = held_rows(structure, status, np.zeros(len(status)))
+    held = held[rigid_rows(structure, closed, sticking)]
     if rank(held) == len(held):
         return 0.0
     response: Response = structure.once("response", lambda: Response(structure))

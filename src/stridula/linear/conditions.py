@@ -205,9 +205,9 @@ def slides_on(structure: Structure, status: Sequence[str], share: Array) -> bool
     share : ndarray, shape (contacts,)
         Signed tangential over normal force of sliding contacts [1].
     """
-    held, pushes, closed, _ = held_rows(structure, status, share)
+    held, pushes, closed, stuck = held_rows(structure, status, share)
     # Compliant contacts respond to any impulse.
-    rigid = rigid_rows(structure, closed, len(held))
+    rigid = rigid_rows(structure, closed, stuck)
     size = sum(structure.is_rigid(k) for k in closed)
     held, pushes = held[rigid], pushes[rigid]
     kept = _independent(held)

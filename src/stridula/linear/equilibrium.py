@@ -365,7 +365,7 @@ def _check_determined(structure: Structure, status: Sequence[str], share: Array)
     """Raise if forces that the constraints leave open move the bodies, or if a free motion is braked."""
     held, pushes, closed, stuck = held_rows(structure, status, share)
     _check_unbraked(structure, structure.free_motions(held))
-    rigid = rigid_rows(structure, closed, len(held))
+    rigid = rigid_rows(structure, closed, stuck)
     held, pushes = held[rigid], pushes[rigid]
     if rank(held) == len(held) or rank(np.hstack([held, pushes])) == rank(held):
         return

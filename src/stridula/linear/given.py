@@ -30,10 +30,10 @@ def given_status(status: Status | None, system: System) -> tuple[str, ...] | Non
     found = one_or_each("status", status, lambda name, word: choice(name, word, STATUS_WORDS), len(contacts))
     each = (found,) * len(contacts) if isinstance(found, str) else found
     for word, contact in zip(each, contacts, strict=True):
-        if word == "sticking" and not contact.law.set_valued:
+        if word == "sticking" and contact.friction.has_state:
             raise ArgumentError(
                 "status",
-                f"be sliding or separated under {contact.law.law} friction, which does not stick exactly",
+                f"be sliding or separated under {contact.friction.law} friction, which does not stick exactly",
                 word,
             )
     return each

@@ -83,6 +83,10 @@ def start_of(system: System, asked: InitialEquilibrium) -> Start:
     laws = [contact.law.under(float(at.normal_force[k])) for k, contact in enumerate(system.contacts)]
     slips, ways = at.slip_velocity.tolist(), structure.ways.tolist()
     friction_state = [_states(*one) for one in zip(laws, slips, ways, states.tolist(), strict=True)]
+    for k, contact in enumerate(system.contacts):
+        if contact.tangential_stiffness is not None and at.status[k] == STICKING:
+            held = (at.tangential_force[k] / contact.tangential_stiffness, at.lateral_force[k] / contact.tangential_stiffness)
+            friction_state[k] = _along(ways[k], held)
     return Start(_closed(whole, at.status, position), velocity, np.array(friction_state), at.found, exponent)
 
 
@@ -211,6 +215,9 @@ def _states(law: FrictionLaw, slip: float, way: Sequence[float], change: Sequenc
     if not slip:
         return law.states_at_start
     along = law.state_in_sliding(slip, change[0])
-    if not law.state_is_vector:
-        return along, 0.0
-    return way[0] * along - way[1] * change[1], way[1] * along + way[0] * change[1]
+    return _along(way, (along, change[1])) if law.state_is_vector else (along, 0.0)
+
+
+def _along(way: Sequence[float], vector: Sequence[float]) -> tuple[float, float]:
+    """Return a vector, given along a direction of the tangents and across it, along both tangents."""
+    return way[0] * vector[0] - way[1] * vector[1], way[1] * vector[0] + way[0] * vector[1]

@@ -153,6 +153,11 @@ class Structure:
         """Return whether a contact is rigid."""
         return self.system.contacts[contact].yields is None
 
+    def joint_give(self, contact: int) -> float:
+        """Return the flexibility of a sticking contact along its tangents [m/N], 0 without a joint there."""
+        stiffness = self.system.contacts[contact].tangential_stiffness
+        return 0.0 if stiffness is None else 1.0 / stiffness
+
     def shifted(self, shifts: Array) -> Structure:
         """Return the system with its contact points shifted along their tracks by distances [m], shape (contacts,)."""
         other = copy(self)

@@ -16,7 +16,7 @@ from ..arrays import Array
 from ..checks import ArgumentError
 from ..contact.linearised import Linearised
 from ..contact.stiffness import slopes_at
-from .balance import held_rows, rank, rigid_rows
+from .balance import held_across, held_rows, rank, rigid_rows
 from .equilibrium import Equilibrium
 from .structure import SLIDING, STICKING, Structure
 
@@ -108,7 +108,11 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
     slopes = [slopes_at(one, at) if one else (0.0, 0.0) for one, at in zip(every, forces, strict=True)]
     for matrix, column in zip((stiffness, damping), zip(*slopes, strict=True), strict=False):
         _add(matrix, column, pushes[: len(closed)], held[: len(closed)])
-    rigid = rigid_rows(structure, closed, len(held))
+    joints = [structure.system.contacts[k] for k in (*stuck, *held_across(structure, stuck))]
+    joined = [(one.tangential_stiffness or 0.0, one.tangential_damping) for one in joints]
+    for matrix, column in zip((stiffness, damping), zip(*joined, strict=True), strict=False):
+        _add(matrix, column, -pushes[len(closed) :], held[len(closed) :])
+    rigid = rigid_rows(structure, closed, stuck)
     spread = _independent(held[rigid])
     held, pushes = spread.T @ held[rigid], spread.T @ pushes[rigid]
     by_state, from_velocity, state = _states(kept := [one for one in answers if one.near.state_by_state], structure)

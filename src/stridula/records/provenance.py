@@ -140,7 +140,8 @@ def _unmoved(connection: Connection) -> tuple[str, ...]:
 
 def _contact(contact: PointContact) -> dict[str, Any]:
     given = {"at": _value(contact.at), "gap": _value(contact.gap)}
-    for name in ("inclination", "name", "normal", "tangent", "surface_velocity", "surface", "area"):
+    joint = ("tangential_stiffness", "tangential_damping")
+    for name in ("inclination", "name", "normal", "tangent", "surface_velocity", "surface", "area", *joint):
         if getattr(contact, name):
             given[name] = _value(getattr(contact, name))
     if contact.yields is not None:

@@ -34,6 +34,10 @@ class PairContact(Table):
     """distance between tip and track at the start [m]"""
     stiffness: Stiffness | None = None
     """stiffness of the contact itself: a number [N/m] or a table, rigid if left out"""
+    tangential_stiffness: is_.Stiffness | None = None
+    """stiffness along the tangents, in series with the friction [N/m]; rigid if left out"""
+    tangential_damping: is_.Viscosity = PointContact.tangential_damping
+    """damping beside this stiffness [N s/m]"""
     point: is_.Point = "tip"
     """point of the slider that touches: tip, root or a position from the tip [m]"""
     name: str = ""

@@ -8,7 +8,7 @@ import numpy as np
 
 import stridula as st
 
-from .laws import curve, has_state, ratio_with_state, state_after, state_of_new
+from .laws import ElasticFriction, curve, has_state, ratio_with_state, state_after, state_of_new
 from .way import SEPARATED, SLIDING, STICKING, Before, Free
 
 
@@ -106,13 +106,16 @@ class Contact:
         slip = self.traces.slip @ (q - q_before) + self.imposed.tip - earlier.tip - (self.imposed.track - earlier.track)
         speed = self.traces.slip @ velocity + (later.tip - earlier.tip - later.track + earlier.track) / (2 * h)
         self.closed = self.stuck = 0.0
-        law = self.contact.friction
+        law = self.contact.law
         self.before = now = Before(law, state=state_of_new(law))
         if self.last_gap == 0.0 and speed == 0.0:
             now.status, slip = STICKING, 0.0
         now.slip, now.earlier_slip = slip, 3 * slip - 2 * h * speed
         if has_state(law):
-            now.given = ratio_with_state(law, (now.state + state_after(law, now.state, speed, h)) / 2, speed)
+            # A joint begins without deflection, and without force.
+            is_joint = isinstance(law, ElasticFriction)
+            later = 0 if is_joint else state_after(law, now.state, speed, h)
+            now.given = 0.0 if is_joint else ratio_with_state(law, (now.state + later) / 2, speed)
         elif speed != 0.0:
             now.given = np.sign(speed) * curve(law, abs(speed))
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 import stridula as st
+from stridula.contact.elastic import ElasticFriction
 
 
 def has_state(law):
-    return isinstance(law, (st.LuGre, st.RateAndState))
+    return isinstance(law, (st.LuGre, st.RateAndState, ElasticFriction))
 
 
 def held_up_to(law, was_sticking):
@@ -46,9 +47,30 @@ def limit(law, speed):
     return law.kinetic + (law.static - law.kinetic) * np.exp(-((speed / law.velocity) ** 2))
 
 
+def cut(ratio, most):
+    """A ratio along one tangent or two, or one of the size `most` along it."""
+    return ratio if size(ratio) <= most else most * ratio / size(ratio)
+
+
+def rate_of_joint(law, state, v, h):
+    """Mean rate over `h` of the deflection of a joint, implicit: the slip velocity unless its friction slips."""
+    k, c = law.stiffness / law.normal_force, law.damping / law.normal_force
+    ratio = cut(k * (state + v * h) + c * v, curve(law.friction, size(v)))
+    return (ratio - k * state) / (k * h + c)
+
+
+def state_between(law, state, v, stage, h):
+    """Internal state after `h`, from the beginning of a stage that lasts `stage`, at the slip velocity at its end."""
+    if isinstance(law, ElasticFriction):
+        return state + h * rate_of_joint(law, state, v, stage)
+    return state_after(law, state, v, h)
+
+
 def state_after(law, state, v, h):
     """Internal state after `h` at the constant slip velocity `v`."""
     speed = size(v)
+    if isinstance(law, ElasticFriction):
+        return state + h * rate_of_joint(law, state, v, h)
     if isinstance(law, st.LuGre):
         # A relaxation of the bristles, to the direction of the slip.
         rate = law.stiffness * speed / limit(law, speed)
@@ -67,11 +89,21 @@ def state_after(law, state, v, h):
 
 def ratio_with_state(law, state, v):
     """Ratio of forces at slip velocity `v`."""
+    if isinstance(law, ElasticFriction):
+        return cut((law.stiffness * state + law.damping * v) / law.normal_force, curve(law.friction, size(v)))
     if isinstance(law, st.LuGre):
         rate = v - law.stiffness * size(v) / limit(law, size(v)) * state
         return law.stiffness * state + law.damping * rate + law.viscous * v
     exponent = (law.reference + law.b * np.log(law.velocity * state / law.slip_distance)) / law.a
     return law.a * np.arcsinh(v / (2 * law.velocity) * np.exp(exponent))
+
+
+def counts_as_sticking(law, state, v):
+    """Whether a contact under a law with a state counts as sticking after a step with the slip velocity `v`."""
+    if isinstance(law, ElasticFriction):
+        felt = size(law.stiffness * state + law.damping * v) / law.normal_force
+        return felt < (1 - 1e-9) * curve(law.friction, size(v))
+    return size(v) < law.velocity
 
 
 def state_of_new(law):

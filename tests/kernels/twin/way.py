@@ -71,8 +71,9 @@ def on_its_way(before, free, normal, h):
     law, last, give, moved = before.law, before.slip, free.w[1, 1], free.slip + free.w[1, 0] * normal
     pull = give * normal
     if laws.has_state(law):
-        ratio, past, state = with_state(before, moved, give, normal, h, partial(_root, law.velocity * 1e-12))
-        slow = abs(moved - pull * ratio) < h * law.velocity
+        scale = 1e-9 if isinstance(law, laws.ElasticFriction) else law.velocity * 1e-12
+        ratio, past, state = with_state(before, moved, give, normal, h, partial(_root, scale))
+        slow = laws.counts_as_sticking(law.under(normal), state, (moved - pull * ratio) / h)
         return Way(ratio, past, STICKING if slow else SLIDING, 0.0, state)
     begun, past = 0.5 * (last + moved), before.past
     # Let go, it never sticks.
@@ -219,7 +220,8 @@ def with_state(before, moved, give, normal, h, root):
     All are numbers along one tangent, and vectors along two, where `give`, the compliance, is a matrix. `moved` is the
     slip without friction, under the normal force; `root` finds a velocity.
     """
-    law, state, past = before.law, before.state, before.past
+    law, state, past = before.law.under(normal), before.state, before.past
+    elastic = isinstance(law, laws.ElasticFriction)
     pull, begun, drive = give * normal, 0.5 * (before.slip + moved), moved - before.slip
     grows = later = rest = 0 * drive
     if before.status == SEPARATED:
@@ -228,9 +230,12 @@ def with_state(before, moved, give, normal, h, root):
         # The normal force to which the friction of the last step has changed: an impulse would not go on.
         least = min(normal, before.normal)
         now = give * (before.normal + np.clip(normal - before.normal, -least, least))
+        if elastic:
+            # The force of a joint does not change with the normal force.
+            now, past = give * before.normal, past * before.normal / normal
         grows = drive - (before.slip - before.earlier_slip) - np.dot(now, before.tangential) / before.normal
     u = begun - np.dot(pull, past) - grows / 6
-    count = _parts(law, u, drive, pull, h)
+    count = _parts(law, before, u, drive, pull, h)
     part = 1 / count
     for k in range(count):
         begin, ratios = drive + grows * k * part, np.zeros((2, *np.shape(u)))
@@ -239,6 +244,9 @@ def with_state(before, moved, give, normal, h, root):
             free = u + part * (driven - np.dot(pull, INNER[stage] @ ratios))
 
             def ratio(v, state=state):
+                if elastic:
+                    firm = law.stiffness * SHARE * part * h + law.damping
+                    return laws.cut((law.stiffness * state + firm * v) / normal, laws.curve(law.friction, laws.size(v)))
                 return laws.ratio_with_state(law, laws.state_after(law, state, v, SHARE * part * h), v)
 
             def error(v, free=free, ratio=ratio):
@@ -246,20 +254,33 @@ def with_state(before, moved, give, normal, h, root):
 
             v = root(error, u / h, free / h)
             ratios[stage] = ratio(v)
-            state = laws.state_after(law, state, v, (1 - SHARE, SHARE)[stage] * part * h)
+            state = laws.state_between(law, state, v, SHARE * part * h, (1 - SHARE, SHARE)[stage] * part * h)
         more, less = weighted(part, k * part, ratios)
         later, rest, u = later + more, rest + less, v * h
+    if elastic:
+        most = max(laws.curve(law.friction, laws.size(one) / h) for one in (begun, u))
+        return laws.cut(past + later, most), rest, state
     return past + later, rest, state
 
 
-def _parts(law, u, drive, pull, h):
+def _parts(law, before, u, drive, pull, h):
+    if isinstance(law, laws.ElasticFriction):
+        if np.ndim(pull):
+            pull = _along(u, drive, pull)
+        limit = max(laws.curve(law.friction, 0.0) * before.normal, 1e-200)
+        passed = 2 * laws.size(before.slip) * law.stiffness / limit
+        return int(min(1 + max(4 * np.sqrt(pull / law.normal_force * law.stiffness), min(passed, 8)), 64))
     if not isinstance(law, st.LuGre):
         return int(min(2 + (abs(u) + abs(drive)) / law.slip_distance, 64))
     if np.ndim(pull):
-        squares = u @ u + drive @ drive
-        pull = (u @ pull @ u + drive @ pull @ drive) / squares if squares else np.trace(pull) / 2
+        pull = _along(u, drive, pull)
     change = (laws.size(drive) + pull * law.static) / (4 * law.velocity * h)
     return int(min(1 + max(np.sqrt(pull * law.stiffness) / 0.25, change), 64))
+
+
+def _along(u, drive, pull):
+    squares = u @ u + drive @ drive
+    return (u @ pull @ u + drive @ pull @ drive) / squares if squares else np.trace(pull) / 2
 
 
 def _root(scale, error, last, free):

@@ -76,7 +76,7 @@ def sliding_ratio(law: Law, speed: Number) -> Number:
         powered = share if exponent == 1.0 else (share * share if exponent == 2.0 else share**exponent)
         weakened = (table[row, STATIC] - table[row, KINETIC]) * math.exp(-powered)
         return table[row, KINETIC] + weakened + table[row, VISCOUS] * speed
-    if law.code == at.CURVE or law.code == at.ELASTIC:
+    if law.code == at.CURVE or law.code == at.IN_SERIES:
         return curve_at(law, speed)[0]
     return max(table[row, STATIC] - table[row, SLOPE] * speed, table[row, FLOOR])
 
@@ -118,7 +118,7 @@ def speed_scale(law: Law, state: Number) -> Number:
         return table[row, END]
     if law.code == at.STRIBECK or law.code == at.LUGRE:
         return table[row, VELOCITY]
-    if law.code == at.CURVE or law.code == at.ELASTIC:
+    if law.code == at.CURVE or law.code == at.IN_SERIES:
         return curve_at(law, 0.0)[2]
     # a asinh(V / w): w = 2 V0 exp(-(reference + b ln(V0 theta / D)) / a), kept above the smallest numbers.
     return 2.0 * table[row, REFERENCE_VELOCITY] * math.exp(-min(ageing(law, state), 600.0))
@@ -184,7 +184,7 @@ def next_state(law: Law, state: Number, velocity: Number, step: Number) -> Numbe
     if law.code == at.LUGRE:
         kept, share, _, _, _ = bristles_over(law, speed, step)
         return state * kept + velocity * step * share
-    if law.code == at.ELASTIC:
+    if law.code == at.IN_SERIES:
         return deflected(law, state, ratio_after(law, state, velocity, step)[0], step, step)
     turned = speed * step / table[row, SLIP_DISTANCE]
     if law.code == at.AGING:
@@ -208,7 +208,7 @@ def state_ratio(law: Law, state: Number, velocity: Number) -> Number:
             + table[row, BRISTLE_DAMPING] * rate
             + table[row, BRISTLE_VISCOUS] * velocity
         )
-    if law.code == at.ELASTIC:
+    if law.code == at.IN_SERIES:
         stiffness, damping = joint_of(law)
         return within(stiffness * state + damping * velocity, sliding_ratio(law, speed))
     if velocity == 0.0:
@@ -249,7 +249,7 @@ def ratio_after(law: Law, state: Number, velocity: Number, time: Number) -> Pair
         return ratio, table[row, BRISTLE_STIFFNESS] * new_slope + table[row, BRISTLE_DAMPING] * rate_slope + table[
             row, BRISTLE_VISCOUS
         ]
-    if law.code == at.ELASTIC:
+    if law.code == at.IN_SERIES:
         stiffness, damping = joint_of(law)
         firm, (most, slope, _) = stiffness * time + damping, curve_at(law, speed)
         ratio = stiffness * state + firm * velocity
@@ -285,6 +285,6 @@ def counts_as_sticking(law: Law, speed: Number, felt: Number) -> bool:
     In series with a joint it does while the ratio `felt`, that of the joint alone, is below the limit.
     """
     table, row = law.table, law.row
-    if law.code == at.ELASTIC:
+    if law.code == at.IN_SERIES:
         return felt < FULL * sliding_ratio(law, speed)
     return speed < (table[row, VELOCITY] if law.code == at.LUGRE else table[row, REFERENCE_VELOCITY])

@@ -13,12 +13,12 @@ from ..lanes.compiled import strict, strict_pasted
 from ..lanes.operations import Number, Numbers, Pair
 from ..layout import columns as at
 from ..layout.contact_values import Before, Compliance, Drive, Free, Law
-from ..layout.laws import BRISTLE_STIFFNESS, FLOOR, KINETIC, SLIP_DISTANCE, SLOPE, STATIC, VELOCITY, VISCOUS
+from ..layout.laws import BRISTLE_STIFFNESS, FLOOR, JOINT_STIFFNESS, KINETIC, SLIP_DISTANCE, SLOPE, STATIC, VELOCITY, VISCOUS
 from .friction import (
+    LEAST_FORCE,
     curve_at,
     deflected,
     holding_ratio,
-    joint_of,
     next_state,
     ratio_after,
     sliding_ratio,
@@ -263,15 +263,23 @@ def velocity_after(free: Number, pulled: Number, guess: Number, law: Law, state:
 def parts_with_state(slip: Number, drive: Number, pull: Number, law: Law, step: Number) -> int:
     """Return the number of parts of the way under a law with internal state."""
     table, row = law.table, law.row
-    if law.code == at.ELASTIC:
-        stiffness, _ = joint_of(law)
-        passed = (abs(slip) + abs(drive)) * stiffness / max(sliding_ratio(law, 0.0), 1e-9)
-        count = 1.0 + max(math.sqrt(pull * stiffness) / PHASE, min(passed, REACHES))
-    elif law.code == at.LUGRE:
+    if law.code == at.LUGRE:
         change = (abs(drive) + pull * table[row, STATIC]) / (4.0 * table[row, VELOCITY] * step)
         count = 1.0 + max(math.sqrt(pull * table[row, BRISTLE_STIFFNESS]) / PHASE, change)
     else:
         count = 2.0 + (abs(slip) + abs(drive)) / (AGEING * table[row, SLIP_DISTANCE])
+    return int(min(count, float(MOST_PARTS)))
+
+
+@strict
+def parts_of_joint(softness: Number, last_slip: Number, last_normal: Number, law: Law) -> int:
+    """Return the number of parts of the way of a contact in series with a joint, for a compliance of the bodies.
+
+    It does not depend on the forces sought, which it would otherwise change by jumps.
+    """
+    stiffness = law.table[law.row, JOINT_STIFFNESS]
+    limit = max(sliding_ratio(law, 0.0) * last_normal, LEAST_FORCE)
+    count = 1.0 + max(math.sqrt(softness * stiffness) / PHASE, min(2.0 * last_slip * stiffness / limit, REACHES))
     return int(min(count, float(MOST_PARTS)))
 
 
@@ -298,7 +306,7 @@ def ratio_with_state(normal: Number, slip: Number, w: Compliance, law: Law, befo
     was, last, state, past = before.status, before.slip, before.state, before.past
     pull, moved = w.tt * normal, slip + w.tn * normal
     begun, drive, grows = 0.5 * (last + moved), moved - last, 0.0
-    elastic = law.code == at.ELASTIC
+    elastic = law.code == at.IN_SERIES
     if was == SEPARATED:
         past = 0.5 * state_ratio(law, state, begun / step)
     elif before.normal > 0.0:
@@ -307,7 +315,10 @@ def ratio_with_state(normal: Number, slip: Number, w: Compliance, law: Law, befo
         grows = drive - (last - before.earlier_slip) - w.tt * share * before.tangential
         past = past * before.normal / normal if elastic else past
     slip_now = begun - pull * past - grows / 6.0
-    count = parts_with_state(slip_now, drive, pull, law, step)
+    if elastic:
+        count = parts_of_joint(w.tt, abs(last), before.normal, law)
+    else:
+        count = parts_with_state(slip_now, drive, pull, law, step)
     size, later, rest, velocity = 1.0 / count, 0.0, 0.0, slip_now / step
     time, pulled = STAGE * size * step, STAGE * size * pull / step
     for k in range(count):

@@ -44,6 +44,7 @@ from .slipping import (
     changed_to,
     moments,
     part_of,
+    parts_of_joint,
     parts_with_state,
 )
 from .slipping import slide_through as slide_on_line
@@ -430,7 +431,7 @@ def moved_at(
     speed: Number, free: Tangents, pull: Matrix, law: Law, state: Tangents, time: Number
 ) -> tuple[Tangents, Tangents]:
     """Return the slip velocity that follows from an assumed speed, and the ratios."""
-    if law.code == at.ELASTIC:
+    if law.code == at.IN_SERIES:
         return moved_at_joint(speed, free, pull, law, state, time)
     holds, drags = friction_after(law, state, speed, time)
     kept = scaled(holds, state)
@@ -526,7 +527,7 @@ def state_after(law: Law, state: Tangents, velocity: Tangents, time: Number) -> 
     if law.code == at.LUGRE:
         kept, share, _, _, _ = bristles_over(law, speed, time)
         return plus(scaled(kept, state), time * share, velocity)
-    if law.code == at.ELASTIC:
+    if law.code == at.IN_SERIES:
         stiffness, damping = joint_of(law)
         firm, held = stiffness * time + damping, scaled(stiffness, state)
         ratio = shortened(plus(held, firm, velocity), sliding_ratio(law, speed))
@@ -539,7 +540,7 @@ def state_between(
     law: Law, state: Tangents, velocity: Tangents, ratio: Tangents, stage: Number, time: Number
 ) -> Tangents:
     """Do `state_after` from the beginning of a stage to that of the next one; a joint has the rate of the stage."""
-    if law.code == at.ELASTIC:
+    if law.code == at.IN_SERIES:
         a = deflected(law, state.a, ratio.a, stage, time)
         return Tangents(a, deflected(law, state.b, ratio.b, stage, time))
     return state_after(law, state, velocity, time)
@@ -555,7 +556,7 @@ def ratio_of_state(law: Law, state: Tangents, velocity: Tangents) -> Tangents:
         turned = plus(velocity, -speed / limit, state)
         bent = plus(scaled(table[row, BRISTLE_STIFFNESS], state), table[row, BRISTLE_DAMPING], turned)
         return plus(bent, table[row, BRISTLE_VISCOUS], velocity)
-    if law.code == at.ELASTIC:
+    if law.code == at.IN_SERIES:
         stiffness, damping = joint_of(law)
         return shortened(plus(scaled(stiffness, state), damping, velocity), sliding_ratio(law, speed))
     return scaled(state_ratio(law, state.a, speed), direction_of(velocity, ALONG_A))
@@ -572,7 +573,7 @@ def ratio_with_state(
     was, last, earlier, state, past = before.status, before.slip, before.earlier_slip, before.state, before.past
     pull, moved = scaled_matrix(normal, of_tangents(w)), plus(slips, normal, by_normal(w))
     begun, drive, grows = scaled(0.5, plus(last, 1.0, moved)), plus(moved, -1.0, last), NOTHING
-    elastic = law.code == at.ELASTIC
+    elastic = law.code == at.IN_SERIES
     if was == SEPARATED:
         past = scaled(0.5, ratio_of_state(law, state, over(begun, step)))
     elif before.normal > 0.0:
@@ -586,7 +587,10 @@ def ratio_with_state(
     pulled = 0.5 * (pull.aa + pull.bb)
     if squares > 0.0:
         pulled = (along(slip, times(pull, slip)) + along(drive, times(pull, drive))) / squares
-    count = parts_with_state(size_of(slip), size_of(drive), pulled, law, step)
+    if elastic:
+        count = parts_of_joint(pulled / normal, size_of(last), before.normal, law)
+    else:
+        count = parts_with_state(size_of(slip), size_of(drive), pulled, law, step)
     size, later, rest, speed = 1.0 / count, NOTHING, NOTHING, size_of(slip) / step
     time, matrix = STAGE * size * step, scaled_matrix(STAGE * size / step, pull)
     for k in range(count):

@@ -36,7 +36,7 @@ PARAMETERS = {
     "AGING": _RATE_AND_STATE,
     "SLIP": _RATE_AND_STATE,
     "CURVE": _CURVE,
-    "ELASTIC": {**_CURVE, "stiffness": JOINT_STIFFNESS, "damping": JOINT_DAMPING},
+    "IN_SERIES": {**_CURVE, "stiffness": JOINT_STIFFNESS, "damping": JOINT_DAMPING},
 }
 CODES = {name: getattr(at, name) for name in PARAMETERS}
 # Whether a law sticks exactly, by its code.
