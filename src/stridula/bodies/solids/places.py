@@ -179,8 +179,9 @@ def local_places(kind: ElementKind, nodes: Array, places: Array) -> Array:
         values, slopes = shape_functions(kind, local)
         apart = places - np.einsum("en,eni->ei", values, nodes)
         step = np.einsum("eji,ei->ej", np.linalg.pinv(np.einsum("eni,enj->eij", nodes, slopes)), apart)
-        local = np.clip(local + step, -1.0, 2.0)
-        if np.abs(step).max(initial=0.0) < 1e-14:
+        before, local = local, np.clip(local + step, -1.0, 2.0)
+        # The error that is left is of the order of the square of the last step.
+        if np.abs(local - before).max(initial=0.0) < 1e-10:
             break
     return local
 

@@ -500,9 +500,8 @@ class SolidMesh:
         joined = scipy.sparse.block_array([[None, held], [held.T, self.shares]])
         parts, _ = scipy.sparse.csgraph.connected_components(joined, directed=False)
         if parts > 1:
-            raise ArgumentError(
-                "elements", "form one part", got=f"{parts} that share no node" + (" and no tie" if self.ties else "")
-            )
+            lacking = "node and no tie" if self.ties else "node"
+            raise ArgumentError("elements", "form one part", got=f"{parts} that share no {lacking}")
 
     def _set(self, name: str, value: Any) -> None:
         if isinstance(value, np.ndarray):

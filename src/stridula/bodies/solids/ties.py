@@ -152,7 +152,7 @@ def _followed(shares: Any, nodes: Array, rows: Any) -> Any:
     free = shares.diagonal()[nodes] == 1.0
     nodes, rows = nodes[free], (rows @ shares)[free]
     # Nodes that would follow themselves lead; so do, then, those that would follow others of them.
-    for measure in (lambda own: own.diagonal(), lambda own: own.max(axis=1).toarray()):
+    for measure in (lambda own: own.diagonal(), lambda own: own.sum(axis=1)):
         free = measure(abs(rows[:, nodes])) == 0.0
         nodes, rows = nodes[free], rows[free]
     if not nodes.size:
