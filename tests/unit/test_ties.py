@@ -155,7 +155,14 @@ def test_faces_too_far_apart_are_refused_with_their_distance():
         "same unit",
     )
     refused(lambda: tied(PLATE.moved((0.0, 0.0, 3.0))), "'lining/front' 3 m from 'plate/back'")
-    refused(lambda: tied(PLATE.moved((0.0, 0.0, 1e-4)), tolerance=5e-5), "within 5e-05 m", "0.0001 m from")
+    refused(
+        lambda: tied(PLATE.moved((0.0, 0.0, 1e-4)), tolerance=5e-5),
+        "within 5e-05 m and half an element",
+        "0.0001 m from",
+    )
+    refused(
+        lambda: tied(PLATE.moved((0.0, 0.0, 0.004)), tolerance=0.01), "within 0.01 m and half an element", "0.004 m"
+    )
     mesh = tied(PLATE.moved((0.0, 0.0, 0.002)), tolerance=0.0021)
     assert mesh.leads.sum() == tied().leads.sum()
 

@@ -82,8 +82,8 @@ class SolidMesh:
     ties : sequence of (str, str), optional
         Pairs of faces that stay together without sharing nodes, see `tied`.
     tolerance : float, optional
-        Largest distance of a tied node from the other face [m]; a twentieth of the size of the element there if left
-        out.
+        Largest distance of a tied node from the other face [m], at most half the size of the element there; a twentieth
+        of it if left out.
 
     Raises
     ------
@@ -286,8 +286,8 @@ class SolidMesh:
         ties : sequence of (str, str)
             Pairs of faces, such as ``("plate/front", "lining/back")``.
         tolerance : float, optional
-            Largest distance of a tied node from the other face [m]; a twentieth of the size of the element there if
-            left out.
+            Largest distance of a tied node from the other face [m], at most half the size of the element there; a
+            twentieth of it if left out.
 
         Raises
         ------

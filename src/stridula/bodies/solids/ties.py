@@ -12,15 +12,15 @@ import scipy.sparse
 from ...arrays import Array
 from ...checks import ArgumentError
 from ...long_tasks import check_wanted
-from .elements import shape_functions
+from .elements import shape_functions, volumes
 from .kinds import ElementKind
 from .places import local_places
 
 if TYPE_CHECKING:
     from .solid_mesh import SolidMesh
 
-# Largest distance of a tied node from the other face, relative to the size of the face of an element there.
-NEAR = 0.05
+# Largest distance of a tied node from the other face, relative to the size of the element there: usual and in any case.
+NEAR, FARTHEST = 0.05, 0.5
 # Bulge of a curved face of an element beyond its nodes, relative to its radius.
 BULGE = 0.2
 # Shares of nodes that are due to rounding.
@@ -109,9 +109,11 @@ def opposite(mesh: SolidMesh, name: str, places: Array) -> Opposite:
     """
     facets, face, width = mesh.faces[name], mesh.face(name), mesh.elements.shape[1]
     ours = mesh.nodes[face.nodes]
-    middle, size = ours.mean(axis=1), np.sqrt(face.area)
+    middle = ours.mean(axis=1)
     radius = np.linalg.norm(ours - middle[:, None], axis=2).max(axis=1)
-    allowed = NEAR * size if mesh.tolerance is None else np.full(len(size), mesh.tolerance)
+    depth = volumes(mesh.element_kind, mesh.nodes, mesh.elements[facets[:, 0]]) / face.area
+    size = np.minimum(np.sqrt(face.area), 3.0 * depth if len(mesh.element_kind.corners) == 4 else depth)
+    allowed = NEAR * size if mesh.tolerance is None else np.minimum(mesh.tolerance, FARTHEST * size)
     reach = (1.0 + BULGE) * radius + allowed
     tree = scipy.spatial.cKDTree(middle)
     nodes = np.zeros((len(places), width), dtype=np.int64)
@@ -120,8 +122,8 @@ def opposite(mesh: SolidMesh, name: str, places: Array) -> Opposite:
     for start in range(0, len(places), AT_ONCE):
         check_wanted()
         near = tree.query_ball_point(places[start : start + AT_ONCE], reach.max())
-        which = start + np.repeat(np.arange(len(near)), [len(one) for one in near])
-        facet = np.concatenate([np.zeros(0, dtype=np.int64), *(np.array(one, dtype=np.int64) for one in near)])
+        pairs = [(start + place, facet) for place, those in enumerate(near) for facet in those]
+        which, facet = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
         close = np.linalg.norm(places[which] - middle[facet], axis=1) <= reach[facet]
         which, facet = which[close], facet[close]
         those = mesh.elements[facets[facet, 0]]
@@ -129,6 +131,7 @@ def opposite(mesh: SolidMesh, name: str, places: Array) -> Opposite:
         on_face, _ = shape_functions(mesh.element_kind, _onto_face(mesh.element_kind, facets[facet, 1], local))
         apart = np.linalg.norm(places[which] - np.einsum("pn,pni->pi", on_face, mesh.nodes[those]), axis=1)
         order = np.lexsort([apart, which])
+        # The nearest face of each place.
         best = order[np.unique(which[order], return_index=True)[1]]
         which = which[best]
         values, _ = shape_functions(mesh.element_kind, local[best])
@@ -182,8 +185,8 @@ def _too_far(mesh: SolidMesh, number: int, found: Opposite) -> ArgumentError:
         ours, theirs = (mesh.nodes[mesh.nodes_of(name)] for name in (first, second))
         distance = float(scipy.spatial.cKDTree(ours).query(theirs)[0].min())
     got = f"{second!r} {distance:.3g} m from {first!r}; are both in place, in the same unit?"
-    near = f"{NEAR:.0%} of an element" if mesh.tolerance is None else f"{mesh.tolerance:.3g} m"
-    return ArgumentError(f"ties[{number}]", f"name faces within {near} of each other", got=got)
+    near = f"{NEAR:.0%} of" if mesh.tolerance is None else f"{mesh.tolerance:.3g} m and half"
+    return ArgumentError(f"ties[{number}]", f"name faces within {near} an element of each other", got=got)
 
 
 def _doubts(mesh: SolidMesh, first: str, second: str, near: Array) -> list[str]:
