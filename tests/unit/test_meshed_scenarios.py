@@ -635,7 +635,7 @@ BAD_SOLIDS = {
     "another file": ({"mesh": {"shape": "file", "file": "case.toml"}}, "bodies.a.mesh.file must end in .inp, .bdf, "),
     "another shape": (
         {"mesh": {"shape": "ring"}},
-        "bodies.a.mesh.shape must be one of block, sector, extrusion, file, elements, got 'ring'",
+        "bodies.a.mesh.shape must be one of block, sector, extrusion, file, elements, tied, got 'ring'",
     ),
     "two lengths": (
         {"mesh": CUBE | {"lengths": [1, 2]}},

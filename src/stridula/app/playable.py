@@ -197,11 +197,14 @@ def _check_size(tables: dict[str, Any]) -> None:
         elements = body.get("elements", 1) if isinstance(body, dict) else 1
         if isinstance(elements, (int, float)) and elements > MOST_ELEMENTS:
             raise ScenarioError([f"{name}.elements must be at most {MOST_ELEMENTS} to be played, got {elements!r}"])
-        divisions = look_up(body, ("mesh", "divisions"))
-        counts = [one for one in divisions if isinstance(one, (int, float))] if isinstance(divisions, list) else []
-        if math.prod(counts) > MOST_OF_MESH:
-            told = f"{name}.mesh.divisions must make at most {MOST_OF_MESH} elements to be played, got {divisions!r}"
-            raise ScenarioError([told])
+        parts = look_up(body, ("mesh", "parts"))
+        for path in (("mesh",), *(("mesh", "parts", part) for part in (parts if isinstance(parts, dict) else ()))):
+            divisions = look_up(body, (*path, "divisions"))
+            counts = [one for one in divisions if isinstance(one, (int, float))] if isinstance(divisions, list) else []
+            if math.prod(counts) > MOST_OF_MESH:
+                key = ".".join((name, *path))
+                told = f"{key}.divisions must make at most {MOST_OF_MESH} elements to be played, got {divisions!r}"
+                raise ScenarioError([told])
 
 
 def _check_system(system: System) -> None:

@@ -220,7 +220,8 @@ def mesh_tables(body: Any) -> dict[str, Any]:
 
 
 def _cells(mesh: Any, *names: str) -> dict[str, Any]:
-    return {name: _value(getattr(mesh, name)) for name in names}
+    given = {name: getattr(mesh, name) for name in names}
+    return {name: _value(one) for name, one in given.items() if one is not None}
 
 
 def _general_body(body: Any, system: System, probed: Sequence[BodyPoint]) -> dict[str, Any]:

@@ -68,7 +68,7 @@ def solid_body(table: Tables, within: Within) -> SolidBody | None:
     """Return a body meshed in space, or None if there is a problem; parameters as for `axisymmetric_body`."""
     mesh: SolidMesh | None = None
     with within("mesh"):
-        mesh = _mesh(table.pop("mesh"))
+        mesh = _mesh(table.pop("mesh"), within)
     materials = _materials("materials", table, within)
     if mesh is None or materials is None:
         return None
@@ -125,11 +125,20 @@ def _box(sides: Tables, least: float = 0.0) -> tuple[tuple[float, float], tuple[
     return (sides["inner"], sides["outer"]), (sides["bottom"], sides["top"])
 
 
-def _mesh(given: Tables) -> SolidMesh:
+def _mesh(given: Tables, within: Within) -> SolidMesh | None:
+    """Return a mesh, or None if there is a problem with a part of it."""
     table = _given(given)
     shape = table.pop("shape")
     place = {key: table.pop(key) for key in ("rotation", "offset") if key in table}
-    if shape == "file":
+    if shape == "tied":
+        parts: dict[str, SolidMesh | None] = dict.fromkeys(table["parts"])
+        for name, part in table["parts"].items():
+            with within("mesh", "parts", name):
+                parts[name] = _mesh(part, within)
+        if None in parts.values():
+            return None
+        mesh = SolidMesh.tied(**{**table, "parts": parts})
+    elif shape == "file":
         mesh = _read(SolidMesh.read, table)
     else:
         mesh = SolidMesh(**table) if shape == "elements" else MADE[shape](**table)

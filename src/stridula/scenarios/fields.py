@@ -216,6 +216,17 @@ class Fixed:
         return value
 
 
+class Pair:
+    """Two faces of a tie by their names."""
+
+    schema = list_of(TEXT, 2)
+
+    def read(self, value: Any) -> Any:
+        if not isinstance(value, list) or len(value) != 2 or not all(isinstance(one, str) for one in value):
+            raise refused('be two names of faces, such as ["plate/front", "lining/back"]')
+        return value
+
+
 class Divided:
     """Faces in contact: their names, or their divisions into points by name."""
 
@@ -412,4 +423,5 @@ PointTable = Annotated[Any, Read(Points())]
 PlaceTable = Annotated[Any, Read(Places())]
 MeshNode = Annotated[Any, Read(Node())]
 FixedGroups = Annotated[Any, Read(Fixed())]
+TiedFaces = Annotated[Any, Read(Pair())]
 DividedFaces = Annotated[Any, Read(Divided())]

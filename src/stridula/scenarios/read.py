@@ -23,6 +23,8 @@ from .shipped import shipped
 FILES = ("file", "mass", "stiffness", "damping", "labels", "mesh")
 # Tables of a body that may also name a file.
 MESHES = ("profile", "mesh")
+# Table of a mesh with those of its parts.
+PARTS = "parts"
 
 # Name of the scenario that another program writes into a pipe.
 PIPED = "-"
@@ -86,9 +88,7 @@ def tables_of_text(text: str, name: str) -> dict[str, Any]:
     named = tables.get("bodies")
     for body in named.values() if isinstance(named, dict) else ():
         if names_files(body):
-            raise ScenarioError(
-                [f"bodies must not name files in a text, got {brief(', '.join(_files_of(body).values()))}"]
-            )
+            raise ScenarioError([f"bodies must not name files in a text, got {brief(', '.join(_files_of(body)))}"])
     return _with_base(tables, Path(), ())
 
 
@@ -143,6 +143,8 @@ def _with_own_files(body: Any, folder: Path) -> Any:
     if not isinstance(body, dict):
         return body
     inside = {key: _with_own_files(body[key], folder) for key in MESHES if isinstance(body.get(key), dict)}
+    if isinstance(body.get(PARTS), dict):
+        inside[PARTS] = {name: _with_own_files(part, folder) for name, part in body[PARTS].items()}
     return body | inside | {key: str(folder / text) for key, text in _own_files(body).items()}
 
 
@@ -151,11 +153,13 @@ def names_files(body: Any) -> bool:
     return bool(_files_of(body))
 
 
-def _files_of(body: Any) -> dict[str, str]:
+def _files_of(body: Any) -> list[str]:
+    """Return the files named in the table of a body, of its mesh and of the parts of that."""
     if not isinstance(body, dict):
-        return {}
-    inside = [_own_files(body[key]) for key in MESHES if isinstance(body.get(key), dict)]
-    return {key: text for files in (*inside, _own_files(body)) for key, text in files.items()}
+        return []
+    parts = body.get(PARTS)
+    tables = [*map(body.get, MESHES), *(parts.values() if isinstance(parts, dict) else ())]
+    return [file for table in tables for file in _files_of(table)] + list(_own_files(body).values())
 
 
 def _own_files(table: dict[str, Any]) -> dict[str, str]:

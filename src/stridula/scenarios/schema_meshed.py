@@ -105,7 +105,7 @@ class Placed(Table):
 
 class BlockMesh(Placed):
     shape: Literal["block"]
-    """block, sector, extrusion, file or elements"""
+    """block, sector, extrusion, file, elements or tied"""
     lengths: is_.Lengths
     """sides along x, y and z from the origin [m]"""
     divisions: is_.Divisions
@@ -114,7 +114,7 @@ class BlockMesh(Placed):
 
 class SectorMesh(Placed):
     shape: Literal["sector"]
-    """block, sector, extrusion, file or elements"""
+    """block, sector, extrusion, file, elements or tied"""
     radii: is_.Radii
     """inner and outer radius [m]"""
     angles: is_.Angles
@@ -129,7 +129,7 @@ class SectorMesh(Placed):
 
 class ExtrusionMesh(Placed):
     shape: Literal["extrusion"]
-    """block, sector, extrusion, file or elements"""
+    """block, sector, extrusion, file, elements or tied"""
     nodes: is_.Rows
     """coordinates of each node in the plane [m]"""
     quadrilaterals: is_.Rows
@@ -144,7 +144,7 @@ class ExtrusionMesh(Placed):
 
 class FileMesh(Placed):
     shape: Literal["file"]
-    """block, sector, extrusion, file or elements"""
+    """block, sector, extrusion, file, elements or tied"""
     file: str
     """file of a mesh, beside the scenario"""
     scale: is_.Length = 1.0
@@ -155,7 +155,7 @@ class FileMesh(Placed):
 
 class ElementsMesh(Placed):
     shape: Literal["elements"]
-    """block, sector, extrusion, file or elements"""
+    """block, sector, extrusion, file, elements or tied"""
     kind: Element
     """tetra, tetra10, hexahedron, hexahedron20 or hexahedron27"""
     nodes: is_.Rows
@@ -168,15 +168,35 @@ class ElementsMesh(Placed):
     """pairs of an element and one of its faces, by name of the group"""
     node_sets: dict[str, is_.Vector] | None = None
     """nodes of each set by its name"""
+    ties: list[is_.TiedFaces] | None = None
+    """pairs of faces that stay together; the nodes of the second follow the first"""
+    tolerance: is_.Length | None = None
+    """largest distance of a tied node from the other face, a twentieth of an element if left out [m]"""
 
 
 PROFILES = (RectangleProfile, RectanglesProfile, LineProfile, MeshProfile, CellsProfile)
-MESHES = (BlockMesh, SectorMesh, ExtrusionMesh, FileMesh, ElementsMesh)
+PARTS = (BlockMesh, SectorMesh, ExtrusionMesh, FileMesh, ElementsMesh)
 
 if TYPE_CHECKING:
     HeldPlaces = Any
+    PartMesh = Any
 else:
     HeldPlaces = list[text_or(Held)]
+    PartMesh = one_of("shape", PARTS)
+
+
+class TiedMesh(Placed):
+    shape: Literal["tied"]
+    """block, sector, extrusion, file, elements or tied"""
+    parts: dict[str, PartMesh]
+    """meshes by the names of the parts"""
+    ties: list[is_.TiedFaces]
+    """pairs of faces, such as plate/front and lining/back; the nodes of the second follow the first"""
+    tolerance: is_.Length | None = None
+    """largest distance of a tied node from the other face, a twentieth of an element if left out [m]"""
+
+
+MESHES = (*PARTS, TiedMesh)
 
 
 def meshed_tables(kinds: str, material: Any, name: Keys) -> list[type[Table]]:

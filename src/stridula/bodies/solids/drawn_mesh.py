@@ -6,12 +6,11 @@ import numpy as np
 
 from ...arrays import Array
 from ..drawn_surfaces import DrawnSurface
-from .kinds import outer_faces
 from .solid_mesh import SolidMesh
 
 
 def surface_of_mesh(mesh: SolidMesh, shapes: Array) -> DrawnSurface:
-    """Return the faces that belong to one element only, with the middles of their edges.
+    """Return the faces that belong to one element only and are not tied, with the middles of their edges.
 
     Parameters
     ----------
@@ -22,7 +21,7 @@ def surface_of_mesh(mesh: SolidMesh, shapes: Array) -> DrawnSurface:
     """
     kind = mesh.element_kind
     corners = len(kind.faces[0])
-    element, side = outer_faces(kind, mesh.elements).T
+    element, side = mesh.outer_faces.T
     outer = mesh.elements[element[:, None], kind.face_nodes[side]]
     if kind.middles:
         # Round the face: corner, middle of the next edge, corner.

@@ -147,18 +147,13 @@ def located(mesh: SolidMesh, place: tuple[float, float, float]) -> tuple[Array, 
     near = np.flatnonzero(
         ((there >= low - BULGE * size[:, None]) & (there <= high + BULGE * size[:, None])).all(axis=1)
     )
-    best, outside = None, np.inf
-    for element in near:
-        local = _local(kind, mesh.nodes[mesh.elements[element]], there)
-        beyond = _beyond(kind, local)
-        if beyond < outside:
-            best, outside = (element, local), beyond
-        if beyond <= 0.0:
-            break
-    if best is None or outside > OUTSIDE:
+    local = local_places(kind, mesh.nodes[mesh.elements[near]], there)
+    beyond = _beyond(kind, local)
+    if not near.size or beyond.min() > OUTSIDE:
         raise ArgumentError("position", "be the name of a point or (x, y, z) within the mesh", place)
-    element, local = best
-    return mesh.elements[element], shape_functions(kind, local[None])[0][0]
+    # The first that holds it, else the nearest.
+    best = int(np.argmin(np.maximum(beyond, 0.0)))
+    return mesh.elements[near[best]], shape_functions(kind, local[best : best + 1])[0][0]
 
 
 @lru_cache(maxsize=8)
@@ -167,19 +162,31 @@ def _boxes(mesh: SolidMesh) -> tuple[Array, Array]:
     return nodes.min(axis=1), nodes.max(axis=1)
 
 
-def _local(kind: ElementKind, nodes: Array, place: Array) -> Array:
-    """Return the coordinates of a place in the unit element, by Newton's method."""
-    local = kind.nodes.mean(axis=0)
+def local_places(kind: ElementKind, nodes: Array, places: Array) -> Array:
+    """Return places in the unit element, by Newton's method, shape (elements, 3).
+
+    Parameters
+    ----------
+    kind : ElementKind
+        Kind of the elements.
+    nodes : ndarray, shape (elements, nodes of one, 3)
+        Coordinates of their nodes [m].
+    places : ndarray, shape (elements, 3) or (3,)
+        The place for each element, or for all [m].
+    """
+    local = np.tile(kind.nodes.mean(axis=0), (len(nodes), 1))
     for _ in range(STEPS):
-        values, slopes = shape_functions(kind, local[None])
-        step = np.linalg.lstsq((slopes[0].T @ nodes).T, place - values[0] @ nodes, rcond=None)[0]
-        local = np.clip(local + step, -1.0, 2.0)
-        if np.abs(step).max() < 1e-14:
+        values, slopes = shape_functions(kind, local)
+        apart = places - np.einsum("en,eni->ei", values, nodes)
+        step = np.einsum("eji,ei->ej", np.linalg.pinv(np.einsum("eni,enj->eij", nodes, slopes)), apart)
+        before, local = local, np.clip(local + step, -1.0, 2.0)
+        # The error that is left is of the order of the square of the last step.
+        if np.abs(local - before).max(initial=0.0) < 1e-10:
             break
-    return np.asarray(local)
+    return local
 
 
-def _beyond(kind: ElementKind, local: Array) -> float:
-    """Return the distance of coordinates outside of the unit element, zero or below within it."""
-    far = local.sum() if len(kind.corners) == 4 else local.max()
-    return float(max(-local.min(), far - 1.0))
+def _beyond(kind: ElementKind, local: Array) -> Array:
+    """Return the distance of places outside of the unit element, zero or below within it."""
+    far = local.sum(axis=1) if len(kind.corners) == 4 else local.max(axis=1)
+    return np.asarray(np.maximum(-local.min(axis=1), far - 1.0))

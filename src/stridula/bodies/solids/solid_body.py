@@ -354,7 +354,7 @@ class SolidBody(NamedPoints):
 
     @property
     def drawn(self) -> DrawnSurface:
-        """Surface for drawing: the faces that belong to one element only, with their mode shapes."""
+        """Surface for drawing: the faces that belong to one element only and are not tied, with their mode shapes."""
         return surface_of_mesh(self.mesh, self.shapes)
 
     @property
@@ -411,12 +411,14 @@ class SolidBody(NamedPoints):
 
     @property
     def _free(self) -> Array:
-        """Mask of the degrees of freedom that are not held, shape (3 nodes,)."""
-        free = np.ones((len(self.mesh.nodes), 3), dtype=bool)
+        """Mask of the degrees of freedom that neither are held nor follow others, shape (3 nodes,)."""
+        held = np.zeros((len(self.mesh.nodes), 3), dtype=bool)
         for name, directions in self.fixed.items():  # type: ignore[union-attr]
             for direction in directions:
-                free[self.mesh.nodes_of(name), DIRECTIONS.index(direction)] = False
-        return free.ravel()
+                held[self.mesh.nodes_of(name), DIRECTIONS.index(direction)] = True
+        # Nodes are held if others that follow them are.
+        held = abs(self.mesh.shares).T @ held > 0.0
+        return (~held & self.mesh.leads[:, None]).ravel()
 
     @cached_property
     def _digest(self) -> bytes:
@@ -469,27 +471,27 @@ def _searched(body: SolidBody) -> SolidReduction:
     uniform = np.tile(np.eye(3), (len(mesh.nodes), 1))
     pulled = mass @ uniform
     nodes = np.array(list(body.points.values()), dtype=np.int64)
-    forces = pulled[free]
+    onto = scipy.sparse.kron(mesh.shares, scipy.sparse.eye_array(3), format="csr")[:, free]
+    forces = onto.T @ pulled
     if body.residual_flexibility:
         at_points = np.zeros((free.size, 3 * nodes.size))
         at_points[(3 * nodes[:, None] + np.arange(3)).ravel(), np.arange(3 * nodes.size)] = 1.0
         at_integration, on_patches = _on_faces(body)
-        forces = np.hstack([at_points[free], at_integration[free], forces])
-        patches = on_patches[free] if on_patches.size else None
+        forces = np.hstack([onto.T @ at_points, onto.T @ at_integration, forces])
+        patches = onto.T @ on_patches if on_patches.size else None
     else:
         forces, patches = forces[:, :0], None
-    own_mass = mass[free][:, free]
+    own_mass, own_stiffness = (onto.T @ matrix @ onto for matrix in (mass, stiffness))
     problem = SparseProblem(
         own_mass,
-        stiffness[free][:, free],
+        own_stiffness,
         forces,
         patches,
         _rigid(mesh, free, own_mass),
-        _order(mesh, node_mass, free),
+        _order(mesh, mesh.shares.T @ node_mass @ mesh.shares, free),
     )
     found = reduce_sparse(problem, body.cutoff)
-    shapes = np.zeros((free.size, found.angular_frequency.size))
-    shapes[free] = found.shapes
+    shapes = onto @ found.shapes
     shapes.flags.writeable = False
     lost = _losses(body, stiffness, shapes)
     return SolidReduction(modes_of(found, body.damping, pulled.T @ shapes, lost), shapes, node_mass)
@@ -564,7 +566,7 @@ def _rigid(mesh: SolidMesh, free: Array, mass: Any) -> Array:
     places = (mesh.nodes - mesh.nodes.mean(axis=0)) / size
     turns = [np.cross(axis, places).ravel() for axis in np.eye(3)]
     motions = np.column_stack([np.tile(np.eye(3), (len(places), 1)), *turns])
-    held = motions[~free]
+    held = motions[~free & np.repeat(mesh.leads, 3)]
     if held.size:
         _, share, ways = scipy.linalg.svd(held, full_matrices=len(held) < 6)
         share = np.append(share, np.zeros(6 - share.size))

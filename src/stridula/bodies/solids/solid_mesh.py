@@ -21,9 +21,11 @@ from ...doubtful import doubts_of_size, warn_of
 from ..matrix_input import check_finite, numbers
 from ..reading.finite import check_finite_in
 from . import mesh_files, shapes
+from .assembly import assembly
 from .elements import check_elements, volumes
-from .kinds import KINDS, ElementKind
+from .kinds import KINDS, ElementKind, outer_faces
 from .mesh_quality import scaled_jacobians
+from .ties import Dependence, dependence_of
 
 # Factors of meshes with more nodes exceed usual memory.
 # Twice those of the largest body, parts of which may be held.
@@ -77,6 +79,11 @@ class SolidMesh:
         2).
     node_sets : mapping, optional
         Numbers of nodes by the name of their set.
+    ties : sequence of (str, str), optional
+        Pairs of faces that stay together without sharing nodes, see `tied`.
+    tolerance : float, optional
+        Largest distance of a tied node from the other face [m], at most half the size of the element there; a twentieth
+        of it if left out.
 
     Raises
     ------
@@ -91,6 +98,8 @@ class SolidMesh:
     volumes: Mapping[str, Any] = field(default_factory=dict)
     faces: Mapping[str, Any] = field(default_factory=dict)
     node_sets: Mapping[str, Any] = field(default_factory=dict)
+    ties: Sequence[tuple[str, str]] = ()
+    tolerance: float | None = None
 
     def __post_init__(self) -> None:
         choice("kind", self.kind, tuple(KINDS))
@@ -110,8 +119,15 @@ class SolidMesh:
         for word, limit in limits.items():
             self._set(word, _groups(word, getattr(self, word), *limit))
         self._set("faces", _face_groups(self.faces, len(elements), len(self.element_kind.faces)))
-        self._check_whole()
+        self._set("ties", _ties(self.ties, self.faces))
+        if self.tolerance is not None:
+            self._set("tolerance", positive("tolerance", self.tolerance))
+        self._check_used()
+        if not self.ties:
+            self._check_whole()
         check_elements(self.element_kind, nodes, elements)
+        if self.ties:
+            self._check_whole()
         warn_of(doubts_of_size(float(self.size.max())))
 
     @classmethod
@@ -248,6 +264,50 @@ class SolidMesh:
             raise ArgumentError("layers", f"make at most {MOST_NODES} nodes", layers, got=f"{nodes} and more")
         return cls(**shapes.extrusion(places, corners, heights, layers, axis))
 
+    @classmethod
+    def tied(
+        cls, parts: Mapping[str, SolidMesh], ties: Sequence[tuple[str, str]], tolerance: float | None = None
+    ) -> SolidMesh:
+        """Return one mesh of parts that are glued together at faces, whose nodes need not match.
+
+        Each part is a volume by its name; its own groups are "part/group". The nodes of the second face of a tie follow
+        the first face as its elements move there, so that rigid motions and uniform strains are exact; the second face
+        should have the smaller elements. Nodes beyond the tolerance stay free, with a warning. A node of several ties
+        follows the first. Tied faces are no part of the surface for sound and drawing where the middles of their
+        elements lie on the other face.
+
+        Parts of first order get nodes in the middle of edges if others have them; hexahedra are cut into tetrahedra if
+        other parts have these.
+
+        Parameters
+        ----------
+        parts : mapping
+            Meshes by the names of the parts.
+        ties : sequence of (str, str)
+            Pairs of faces, such as ``("plate/front", "lining/back")``.
+        tolerance : float, optional
+            Largest distance of a tied node from the other face [m], at most half the size of the element there; a
+            twentieth of it if left out.
+
+        Raises
+        ------
+        ValueError
+            If a face is missing or too far from the other, if a part is not tied, or as in `SolidMesh`.
+
+        Examples
+        --------
+        A lining on its plate::
+
+            pad = st.SolidMesh.tied({"plate": plate, "lining": lining}, [("plate/front", "lining/back")])
+            body = st.SolidBody(pad, {"plate": steel, "lining": friction}, contact_faces=["lining/front"], cutoff=8e3)
+        """
+        instance("parts", parts, Mapping)
+        for name, part in parts.items():
+            instance(f"parts[{name!r}]", part, SolidMesh)
+        mesh = cls(**assembly(parts), ties=ties, tolerance=tolerance)
+        warn_of(mesh._dependence.doubts)
+        return mesh
+
     @property
     def element_kind(self) -> ElementKind:
         """Kind of its elements."""
@@ -271,6 +331,26 @@ class SolidMesh:
     def volume(self) -> Array:
         """Volume of each element [m³], shape (elements,)."""
         return volumes(self.element_kind, self.nodes, self.elements)
+
+    @property
+    def shares(self) -> Any:
+        """Share of each node in the displacement of each through ties, sparse, shape (nodes, nodes).
+
+        The unit matrix without ties.
+        """
+        return self._dependence.shares
+
+    @property
+    def leads(self) -> Array:
+        """Mask of the nodes that follow no others through ties, shape (nodes,)."""
+        return np.asarray(self.shares.diagonal() == 1.0)
+
+    @property
+    def outer_faces(self) -> Array:
+        """Faces on its surface that are not tied: numbers of the element and its face, shape (faces, 2)."""
+        outer, sides = outer_faces(self.element_kind, self.elements), len(self.element_kind.faces)
+        hidden = self._dependence.hidden @ np.array([sides, 1])
+        return outer[~np.isin(outer @ np.array([sides, 1]), hidden)]
 
     def quadratic(self) -> SolidMesh:
         """Return the mesh with nodes in the middle of its straight edges; itself if it has them.
@@ -377,7 +457,9 @@ class SolidMesh:
 
     def __repr__(self) -> str:
         names = listed(dict.fromkeys([*self.volumes, *self.faces, *self.node_sets]))
-        return f"SolidMesh({len(self.nodes)} nodes, {len(self.elements)} {self.element_kind.words}, groups {names})"
+        ties = f", {counted(len(self.ties), 'tie')}" if self.ties else ""
+        size = f"{len(self.nodes)} nodes, {len(self.elements)} {self.element_kind.words}"
+        return f"SolidMesh({size}, groups {names}{ties})"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _unpickled, ({name: dict(v) if isinstance(v, Mapping) else v for name, v in self._values.items()},)
@@ -394,22 +476,32 @@ class SolidMesh:
         for groups in (self.volumes, self.faces, self.node_sets):
             for name, those in sorted(groups.items()):
                 content.update(repr((name, those.shape, len(groups))).encode() + those.tobytes())
+        if self.ties:
+            content.update(repr((self.ties, self.tolerance)).encode())
         return content.digest()
 
-    def _check_whole(self) -> None:
-        """Raise ValueError if a node has no element or the elements form several parts."""
+    @cached_property
+    def _dependence(self) -> Dependence:
+        return dependence_of(self)
+
+    def _check_used(self) -> None:
+        """Raise ValueError if a node has no element."""
         lonely = np.setdiff1d(np.arange(len(self.nodes)), self.elements)
         if lonely.size:
             raise ArgumentError(
                 "nodes", "each have an element", got=f"{lonely.size} without, the first number {lonely[0]} (from 0)"
             )
+
+    def _check_whole(self) -> None:
+        """Raise ValueError if the elements form several parts that are not tied."""
         count = len(self.elements)
         rows = np.repeat(np.arange(count), self.elements.shape[1])
-        shape = (count + len(self.nodes), count + len(self.nodes))
-        joined = scipy.sparse.coo_array((np.ones(rows.size), (rows, count + self.elements.ravel())), shape=shape)
+        held = scipy.sparse.coo_array((np.ones(rows.size), (rows, self.elements.ravel())), (count, len(self.nodes)))
+        joined = scipy.sparse.block_array([[None, held], [held.T, self.shares]])
         parts, _ = scipy.sparse.csgraph.connected_components(joined, directed=False)
         if parts > 1:
-            raise ArgumentError("elements", "form one part", got=f"{parts} that share no node")
+            lacking = "node and no tie" if self.ties else "node"
+            raise ArgumentError("elements", "form one part", got=f"{parts} that share no {lacking}")
 
     def _set(self, name: str, value: Any) -> None:
         if isinstance(value, np.ndarray):
@@ -466,6 +558,20 @@ def _face_groups(groups: Any, elements: int, sides: int) -> Mapping[str, Array]:
             raise ArgumentError(word, f"name elements below {elements} and faces below {sides}", value)
         found[name] = np.unique(pairs, axis=0)
     return _frozen(found)
+
+
+def _ties(given: Any, faces: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+    """Return pairs of different faces."""
+    instance("ties", given, Sequence)
+    for number, pair in enumerate(given):
+        word = f"ties[{number}]"
+        if isinstance(pair, str) or not isinstance(pair, Sequence) or len(pair) != 2:
+            raise ArgumentError(word, "be a pair of faces, such as ('plate/front', 'lining/back')", pair)
+        for side, name in enumerate(pair):
+            choice(f"{word}[{side}]", name, tuple(faces) or ("none",))
+        if pair[0] == pair[1]:
+            raise ArgumentError(word, "name two faces", pair)
+    return tuple((first, second) for first, second in given)
 
 
 def _area_vectors(places: Array, kind: ElementKind, corners: int) -> Array:

@@ -12,7 +12,7 @@ import scipy.sparse
 from ...arrays import Array
 from ..body_surfaces import PointSurface, inscribed_radius
 from .elements import shape_functions
-from .kinds import ElementKind, outer_faces
+from .kinds import ElementKind
 
 if TYPE_CHECKING:
     from .solid_mesh import SolidMesh
@@ -52,7 +52,7 @@ def cut_faces(mesh: SolidMesh, shapes: Array, largest: float) -> PointSurface:
 def _cut(mesh: SolidMesh, shapes: Array, size: float) -> PointSurface:
     """Return the middles of patches with sides of about a given size, finer along sharp edges."""
     kind, found = mesh.element_kind, []
-    outer = outer_faces(kind, mesh.elements)
+    outer = mesh.outer_faces
     for (element, side), sharp in zip(outer, _sharp_sides(mesh, outer).tolist(), strict=True):
         nodes = mesh.elements[element]
         ends = mesh.nodes[nodes[list(kind.faces[side])]]
