@@ -101,13 +101,12 @@ def stack(friction):
 
 def test_five_blocks_on_each_other_stay():
     """80 contacts, of which the motions of free blocks see 72 numbers: each face carries all that is above it."""
-    run = st.simulate(stack(0.35), 0.012, sample_rate=2e4, probes=[])
+    run = st.simulate(stack(0.35), 0.016, sample_rate=2e4, probes=[])
     assert int(run.unsolved_steps.sum()) == 0
     assert np.abs(run.ledger_residual).max() < 1e-10 * run.drive_work.max()
     last = run.isel(time=slice(-20, None)).mean("time")
     np.testing.assert_allclose(last.normal_force, 80.0, rtol=1e-3)
-    # The sideways force still swings.
-    np.testing.assert_allclose(last.tangential_force.sel(tangent=last.tangent[0]), 8.0, rtol=1.5e-2)
+    np.testing.assert_allclose(last.tangential_force.sel(tangent=last.tangent[0]), 8.0, rtol=1e-2)
 
 
 def lap(friction):

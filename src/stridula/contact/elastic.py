@@ -64,7 +64,7 @@ class ElasticFriction(FrictionLaw):
             return in_pieces(self.friction.coefficient_at, np.array([0.0, 1.0]), 1, 0.0)
         if type(self.friction).parameters is FrictionLaw.parameters:
             return self.friction.curve
-        return FrictionLaw.curve.func(self)  # type: ignore[attr-defined, no-any-return]
+        return FrictionLaw.curve.func(self)  # type: ignore[attr-defined]
 
     def parameters(self) -> dict[str, float]:
         """Return the parameters of the law in the march."""
@@ -84,11 +84,11 @@ class ElasticFriction(FrictionLaw):
         return float(np.sign(velocity) * (limit + change))
 
     def linearised_at(self, velocity: float) -> Linearised:
-        """Return the law linearised about steady sliding at `velocity` [m/s], not 0, in which the force is the limit."""
+        """Return the law linearised about steady sliding at `velocity` [m/s], not 0: the force is the limit."""
         return self.friction.linearised_at(velocity)
 
     def linearised_across(self, velocity: float) -> Linearised:
-        """Return the law linearised across steady sliding at `velocity` [m/s], not 0: the spring turns after the slip."""
+        """Return the law linearised across steady sliding at `velocity` [m/s], not 0: the joint turns after the slip."""
         ratio, speed = float(self.coefficient_at(velocity)), abs(velocity)
         limit = ratio * self.normal_force
         whole = limit + self.damping * speed
@@ -122,8 +122,12 @@ class ElasticFriction(FrictionLaw):
 def check_in_series(law: FrictionLaw, stiffness: Any) -> None:
     """Raise ValueError unless a law may limit the force of a tangential stiffness."""
     if law.has_state:
-        raise ArgumentError("tangential_stiffness", f"be left out under {law.law} friction, which has its own", stiffness)
+        raise ArgumentError(
+            "tangential_stiffness", f"be left out under {law.law} friction, which has its own", stiffness
+        )
     slow = float(np.asarray(law.coefficient_at(np.array([SLOWEST * law.reach]))).flat[0])
     if law.holding > (1.0 + CLOSE) * slow:
         words = "be left out under friction that holds more at rest than in the slowest sliding"
-        raise ArgumentError("tangential_stiffness", words, stiffness, got=f"{law.holding:.4g} and {slow:.4g} ({law.law})")
+        raise ArgumentError(
+            "tangential_stiffness", words, stiffness, got=f"{law.holding:.4g} and {slow:.4g} ({law.law})"
+        )

@@ -26,7 +26,7 @@ UNITS: dict[str, dict[str, str]] = {
     "Pa": {"Pa": "1", "mPa": "1e-3", "MPa": "1e6", "GPa": "1e9"},
     "kg/m3": {"kg/m3": "1", "g/cm3": "1e3"},
     "kg": {"kg": "1", "g": "1e-3", "t": "1e3"},
-    "N/m": {"N/m": "1", "N/mm": "1e3", "kN/m": "1e3"},
+    "N/m": {"N/m": "1", "N/mm": "1e3", "kN/m": "1e3", "kN/mm": "1e6"},
     "N/m3": {"N/m3": "1", "N/mm3": "1e9"},
     "N s/m": {"N s/m": "1", "N s/mm": "1e3", "kN s/m": "1e3"},
     "N s/m3": {"N s/m3": "1", "N s/mm3": "1e9"},

@@ -13,7 +13,17 @@ from ..lanes.compiled import strict, strict_pasted
 from ..lanes.operations import Number, Numbers, Pair
 from ..layout import columns as at
 from ..layout.contact_values import Before, Compliance, Drive, Free, Law
-from ..layout.laws import BRISTLE_STIFFNESS, FLOOR, JOINT_STIFFNESS, KINETIC, SLIP_DISTANCE, SLOPE, STATIC, VELOCITY, VISCOUS
+from ..layout.laws import (
+    BRISTLE_STIFFNESS,
+    FLOOR,
+    JOINT_STIFFNESS,
+    KINETIC,
+    SLIP_DISTANCE,
+    SLOPE,
+    STATIC,
+    VELOCITY,
+    VISCOUS,
+)
 from .friction import (
     LEAST_FORCE,
     curve_at,
