@@ -88,7 +88,7 @@ class ElasticFriction(FrictionLaw):
         return self.friction.linearised_at(velocity)
 
     def linearised_across(self, velocity: float) -> Linearised:
-        """Return the law linearised across steady sliding at `velocity` [m/s], not 0: the joint turns after the slip."""
+        """Return the law linearised across steady sliding at `velocity` [m/s], not 0: the joint follows the slip."""
         ratio, speed = float(self.coefficient_at(velocity)), abs(velocity)
         limit = ratio * self.normal_force
         whole = limit + self.damping * speed
