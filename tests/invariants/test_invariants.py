@@ -302,7 +302,7 @@ def test_harness_rejects_friction_with_the_wrong_sign():
     from stridula._kernels.layout.contact_values import Before, Compliance, Free, Law
 
     law, step = st.Coulomb(0.4), 1e-4
-    marched = Law(layout.COULOMB, np.array([[0.4] + [0.0] * (LAW_COLUMNS - 1)]), 0, 0.4)
+    marched = Law(layout.COULOMB, np.array([[0.4] + [0.0] * (LAW_COLUMNS - 1)]), 0, 0.4, 0.0)
 
     def record(sense):
         """A mass of 1 kg sliding at 1 m/s under 10 N, marched here with the kernel's solve."""

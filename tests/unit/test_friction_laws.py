@@ -158,12 +158,12 @@ def test_the_march_has_the_formulas_of_the_law(law):
 @pytest.mark.parametrize("law", [law for law in every_law() if law.set_valued and law.depends_on_speed], ids=str)
 def test_a_law_bends_within_its_reach(law):
     code, row = law_of_march(law)
-    assert 0.1 * law.reach <= friction.speed_scale(Law(code, row[None], 0, law.holding), 0.0) <= law.reach
+    assert 0.1 * law.reach <= friction.speed_scale(Law(code, row[None], 0, law.holding, 0.0), 0.0) <= law.reach
 
 
 @pytest.mark.parametrize("law", [law for law in every_law() if law.has_state], ids=str)
 def test_a_state_in_steady_sliding_stays(law):
-    marched = Law(getattr(at, law.kernel_code), np.array([[*law.parameters().values()]]), 0, 0.0)
+    marched = Law(getattr(at, law.kernel_code), np.array([[*law.parameters().values()]]), 0, 0.0, 0.0)
     state = law.state_in_sliding(-0.02)
     assert friction.next_state(marched, state, -0.02, 1e-4) == pytest.approx(state, rel=1e-12)
 

@@ -20,7 +20,7 @@ SPEEDS, VALUES = [0.0, 0.005, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0], [0.52, 0.49, 0.43
 
 def in_march(law, speeds):
     code, row = law_of_march(law)
-    own = Law(code, row[None], 0, float(row[0]))
+    own = Law(code, row[None], 0, float(row[0]), 0.0)
     return np.array([marched.sliding_ratio(own, float(speed)) for speed in speeds])
 
 
