@@ -71,21 +71,23 @@ class Choice:
 
 @dataclass(frozen=True)
 class Each:
-    """A sequence of numbers.
+    """A sequence of numbers, or of such sequences.
 
     Attributes
     ----------
-    one : Number
+    one : Number or OneOrEach
         Kind of each number.
     """
 
-    one: Number
+    one: Number | OneOrEach
 
-    def check(self, name: str, value: Any) -> tuple[float, ...]:
+    def check(self, name: str, value: Any) -> tuple[Any, ...]:
         """Return a sequence as a tuple if each number is in the range."""
         if isinstance(value, str) or not isinstance(value, (Sequence, np.ndarray)):
             raise ArgumentError(name, "be a list of numbers", value)
-        return tuple(self.one.check(f"{name}[{k}]", one) for k, one in enumerate(np.asarray(value).tolist()))
+        rows = any(isinstance(one, (Sequence, np.ndarray)) for one in value)
+        values = list(value) if rows else np.asarray(value).tolist()
+        return tuple(self.one.check(f"{name}[{k}]", one) for k, one in enumerate(values))
 
 
 @dataclass(frozen=True)

@@ -50,13 +50,35 @@ def test_a_static_coefficient_holds_and_does_not_slide():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (([0.0, 1.0], [0.3]), "coefficient must have as many values as velocity, two or more, got 1 and 2"),
-        (([0.0], [0.3]), "coefficient must have as many values as velocity, two or more, got 1 and 1"),
+        (([0.0, 1.0], [0.3]), "coefficient must have as many values as velocity, 2, got 1"),
+        (([0.0], [0.3]), "velocity must have two values or more, got 1"),
         (([0.0, 1.0, 1.0], [0.3, 0.2, 0.1]), "velocity[2] must be above 1.0, the one before it, got 1.0"),
         (([-1.0, 1.0], [0.3, 0.2]), "velocity[0] must be 0 or above, got -1.0"),
         (([0.0, 1.0], [0.3, -0.2]), "coefficient[1] must be 0 or above, got -0.2"),
         (([0.0, 1.0], [0.3, float("nan")]), "coefficient[1] must be finite, got nan"),
         (([0.0, 1.0], [0.3, 0.2], 0.1), "static must be at least 0.3, the coefficient in slow sliding, got 0.1"),
+        (([0.0, 1.0], [[0.3, 0.2]]), "coefficient must have as many values as velocity, 2, got 1"),
+        (
+            ([0.0, 1.0], [[0.3, 0.2], [0.2, 0.1]]),
+            "coefficient must have as many values as velocity, 2, got lists of values",
+        ),
+        (([0.0, 1.0], [[0.3, 0.2]], None, [1e5, 2e5]), "coefficient must have as many values as pressure, 2, got 1"),
+        (
+            ([0.0, 1.0], [[0.3, 0.2], [0.3]], None, [1e5, 2e5]),
+            "coefficient[1] must have as many values as velocity, 2, got 1",
+        ),
+        (
+            ([0.0, 1.0], [[0.3, 0.2], [0.3, 0.1]], None, [2e5, 2e5]),
+            "pressure[1] must be above 200000.0, the one before it, got 200000.0",
+        ),
+        (
+            ([0.0, 1.0], [[0.3, 0.2], [0.3, 0.1]], [0.4, 0.2], [1e5, 2e5]),
+            "static[1] must be at least 0.3, the coefficient in slow sliding, got 0.2",
+        ),
+        (
+            ([0.0, 1.0], [[0.3, -0.2], [0.3, 0.1]], None, [1e5, 2e5]),
+            "coefficient[0][1] must be 0 or above, got -0.2",
+        ),
     ],
 )
 def test_a_table_that_cannot_be_used_is_refused(arguments, message):

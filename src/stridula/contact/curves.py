@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,6 +53,12 @@ class Curve:
     def flat(self) -> Array:
         """All numbers of the pieces in a row, as the march reads them."""
         return np.concatenate([self.speed, self.bend, self.coefficients.ravel()])
+
+
+def flat_sections(curves: Sequence[Curve], forces: Sequence[float], statics: Sequence[float]) -> Array:
+    """Return the numbers of curves with common speeds over normal forces [N], and their ratios at rest."""
+    parts = [number for one in curves for number in (one.bend, one.coefficients.ravel())]
+    return np.concatenate([curves[0].speed, *parts, forces, statics])
 
 
 def in_pieces(formula: Formula, speed: Array, order: int, end_slope: float) -> Curve:

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError
 from .curves import Curve, in_pieces
-from .friction_law import CLOSE, SLOWEST, FrictionLaw
+from .friction_law import CLOSE, CURVE, SLOWEST, FrictionLaw
 from .linearised import Linearised
 
 
@@ -62,21 +62,34 @@ class ElasticFriction(FrictionLaw):
         """The coefficient in sliding as a curve in pieces."""
         if not self.friction.depends_on_speed:
             return in_pieces(self.friction.coefficient_at, np.array([0.0, 1.0]), 1, 0.0)
-        if type(self.friction).parameters is FrictionLaw.parameters:
-            return self.friction.curve
         return FrictionLaw.curve.func(self)  # type: ignore[attr-defined]
 
     def parameters(self) -> dict[str, float]:
         """Return the parameters of the law in the march."""
-        return {**super().parameters(), "stiffness": self.stiffness, "damping": self.damping}
+        own = self.friction.parameters() if self.friction.kernel_code == CURVE else super().parameters()
+        return {**own, "stiffness": self.stiffness, "damping": self.damping}
+
+    @property
+    def pieces(self) -> Array:
+        """Numbers of the curve of its friction behind its parameters in the march."""
+        return self.friction.pieces if self.friction.kernel_code == CURVE else self.curve.flat
 
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]."""
         return self.friction.coefficient_at(velocity)
 
     def under(self, normal_force: float) -> ElasticFriction:
-        """Return the law under a normal force [N]."""
-        return replace(self, normal_force=normal_force)
+        """Return the law about a normal force [N]."""
+        return replace(self, friction=self.friction.under(normal_force), normal_force=normal_force)
+
+    @property
+    def depends_on_pressure(self) -> bool:
+        """Whether friction depends on the pressure."""
+        return self.friction.depends_on_pressure
+
+    def slope_over_normal(self, velocity: float, normal_force: float) -> float:
+        """Return the change of the coefficient with the normal force [1/N], in steady sliding at a velocity [m/s]."""
+        return self.friction.slope_over_normal(velocity, normal_force)
 
     def state_in_sliding(self, velocity: float, change: float = 0.0) -> float:
         """Return the deflection [m] in steady sliding at `velocity` [m/s], not 0, plus `change`."""
@@ -125,9 +138,9 @@ def check_in_series(law: FrictionLaw, stiffness: Any) -> None:
         raise ArgumentError(
             "tangential_stiffness", f"be left out under {law.law} friction, which has its own", stiffness
         )
-    slow = float(np.asarray(law.coefficient_at(np.array([SLOWEST * law.reach]))).flat[0])
-    if law.holding > (1.0 + CLOSE) * slow:
-        words = "be left out under friction that holds more at rest than in the slowest sliding"
-        raise ArgumentError(
-            "tangential_stiffness", words, stiffness, got=f"{law.holding:.4g} and {slow:.4g} ({law.law})"
-        )
+    for one in law.sections:
+        slow = float(np.asarray(one.coefficient_at(np.array([SLOWEST * law.reach]))).flat[0])
+        if one.holding > (1.0 + CLOSE) * slow:
+            words = "be left out under friction that holds more at rest than in the slowest sliding"
+            got = f"{one.holding:.4g} and {slow:.4g} ({law.law})"
+            raise ArgumentError("tangential_stiffness", words, stiffness, got=got)

@@ -62,7 +62,7 @@ class FrictionLaw(ABC):
 
     def __post_init__(self) -> None:
         check_declared(self)
-        if self.kernel_code == CURVE and self.set_valued:
+        if type(self).parameters is FrictionLaw.parameters and self.set_valued:
             _ = self.curve
 
     @property
@@ -112,8 +112,13 @@ class FrictionLaw(ABC):
     def parameters(self) -> dict[str, float]:
         """Return the parameters of the law in the march, by their names there: `_kernels.layout.laws.PARAMETERS`."""
         curve = self.curve
-        own = {"pieces": len(curve.coefficients), "order": curve.order}
+        own = {"pieces": len(curve.coefficients), "order": curve.order, "sections": 1}
         return {"static": self.holding, **own, "end_slope": curve.end_slope}
+
+    @property
+    def pieces(self) -> Array:
+        """Numbers of its curve behind its parameters in the march."""
+        return self.curve.flat
 
     @abstractmethod
     def coefficient_at(self, velocity: Array | float) -> Array:
@@ -122,6 +127,24 @@ class FrictionLaw(ABC):
     def under(self, normal_force: float) -> FrictionLaw:
         """Return the law about a normal force [N]."""
         return self
+
+    def on(self, area: float) -> FrictionLaw:
+        """Return the law of a contact that represents an area [m²], with normal forces in place of pressures."""
+        return self
+
+    @property
+    def sections(self) -> tuple[FrictionLaw, ...]:
+        """The law at each pressure at which it is given, itself if it does not depend on the pressure."""
+        return (self,)
+
+    @property
+    def depends_on_pressure(self) -> bool:
+        """Whether friction depends on the pressure."""
+        return False
+
+    def slope_over_normal(self, velocity: float, normal_force: float) -> float:
+        """Return the change of the coefficient with the normal force [1/N], in steady sliding at a velocity [m/s]."""
+        return 0.0
 
     def linearised_at(self, velocity: float) -> Linearised:
         """Return the law linearised about steady sliding at `velocity` [m/s], not 0; by differences by default."""

@@ -77,7 +77,8 @@ class PointContact:
     surface : str, optional
         Name of the surface that it is a point of; some points of a surface may be open in equilibrium.
     area : float, optional
-        Area that it represents, as a point of a surface [m²]; unknown if left out.
+        Area that it represents, as a point of a surface or under friction that depends on the pressure [m²]; unknown
+        if left out.
 
     Notes
     -----
@@ -118,8 +119,11 @@ class PointContact:
         within_a_turn("inclination", self.inclination)
         for word in ("name", "surface"):
             instance(word, getattr(self, word), str)
-        if self.area and not self.surface:
-            raise ArgumentError("area", "be left out except at a point of a surface", self.area)
+        if self.area and not (self.surface or self.friction.depends_on_pressure):
+            words = "be left out except at a point of a surface, or under friction that depends on the pressure"
+            raise ArgumentError("area", words, self.area)
+        if self.friction.depends_on_pressure and not self.area:
+            raise ArgumentError("area", "be given under friction that depends on the pressure", self.area)
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
         if self.tangential_stiffness is not None:
             check_in_series(self.friction, self.tangential_stiffness)
@@ -217,9 +221,10 @@ class PointContact:
     @cached_property
     def law(self) -> FrictionLaw:
         """The law that acts: its friction, in series with its tangential stiffness if it has one."""
+        law = self.friction.on(self.area)
         if self.tangential_stiffness is None:
-            return self.friction
-        return ElasticFriction(self.friction, self.tangential_stiffness, self.tangential_damping)
+            return law
+        return ElasticFriction(law, self.tangential_stiffness, self.tangential_damping)
 
     @property
     def is_spatial(self) -> bool:

@@ -1,9 +1,9 @@
-"""Friction as it is measured: a table of the coefficient over the slip speed."""
+"""Friction as it is measured: a table of the coefficient over the slip speed, and over the pressure."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
@@ -13,100 +13,203 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError
-from ..declared import Each, Number
+from ..declared import Each, Number, OneOrEach
 from .columns import read_columns
-from .curves import OF_TABLE, Curve, in_pieces
-from .friction_law import FrictionLaw
+from .curves import OF_TABLE, Curve, flat_sections, in_pieces
+from .friction_law import CURVE, FrictionLaw
 from .linearised import Linearised
 
 
 @dataclass(frozen=True)
 class TabulatedFriction(FrictionLaw):
-    """Friction given at some slip speeds, such as measured on a test bench; sticking is exact.
+    """Friction given at some slip speeds, and at some pressures, such as measured on a test bench; sticking is exact.
 
-    Monotone cubic interpolation between the points (Fritsch & Carlson 1980, SIAM J. Numer. Anal. 17): no overshoot, and
+    Monotone cubic interpolation between the speeds (Fritsch & Carlson 1980, SIAM J. Numer. Anal. 17): no overshoot, and
     a continuous slope. Below the first and above the last speed the coefficient is constant. It is the same in both
-    senses of slip; the friction force opposes the slip.
+    senses of slip; the friction force opposes the slip. Between pressures the coefficient is on a straight line, below
+    the first and above the last it is constant.
 
     Parameters
     ----------
     velocity : sequence of float
         Slip speeds at which the coefficient is given [m/s], rising, from 0 on.
-    coefficient : sequence of float
-        Coefficient of friction at each [1].
-    static : float, optional
+    coefficient : sequence of float, or of sequences of float
+        Coefficient of friction at each [1]; with pressures, a list for each of them.
+    static : float or sequence of float, optional
         Coefficient up to which a contact at rest is held [1], at least the first of `coefficient`, which it is if left
-        out.
+        out; with pressures, one for each of them.
+    pressure : sequence of float, optional
+        Pressures at which it is given [Pa], rising, from 0 on. The contact must have an area, as the points of surfaces
+        have; the pressure is its normal force over this area.
 
     Raises
     ------
     ValueError
-        If speeds do not increase, an argument is out of its range, or the numbers of entries differ.
+        If speeds or pressures do not increase, an argument is out of its range, or the numbers of entries differ.
     """
 
     law: ClassVar[str] = "tabulated"
     velocity: Annotated[Sequence[float], Each(Number("m/s", least=0.0))]
-    coefficient: Annotated[Sequence[float], Each(Number(least=0.0))]
-    static: Annotated[float, Number(least=0.0)] | None = None
+    coefficient: Annotated[Sequence[float] | Sequence[Sequence[float]], Each(OneOrEach(Number(least=0.0)))]
+    static: Annotated[float | Sequence[float], OneOrEach(Number(least=0.0))] | None = None
+    pressure: Annotated[Sequence[float], Each(Number("Pa", least=0.0))] | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._check_rising("velocity", self.velocity)
+        if self.pressure is not None:
+            self._check_rising("pressure", self.pressure)
+            self._check_count("coefficient", self.coefficient, "pressure", self.pressure)
+            if self.static is not None:
+                self._check_count("static", self.static, "pressure", self.pressure)
+        for number, values in enumerate(self._rows):
+            where = "coefficient" if self.pressure is None else f"coefficient[{number}]"
+            self._check_count(where, values, "velocity", self.velocity)
+            if self.static is not None and self._statics[number] < values[0]:
+                where = "static" if self.pressure is None else f"static[{number}]"
+                words = f"be at least {values[0]!r}, the coefficient in slow sliding"
+                raise ArgumentError(where, words, self._statics[number])
 
     @classmethod
     def read(
         cls,
         path: str | Path,
-        columns: tuple[str | int, str | int] = (0, 1),
+        columns: Sequence[str | int] = (0, 1),
         *,
         static: float | None = None,
         speed_unit: float = 1.0,
+        pressure_unit: float = 1.0,
     ) -> TabulatedFriction:
         """Read a table from a text file, such as a CSV.
 
         Parameters
         ----------
         path : str or Path
-            File with a line for each slip speed; values are separated by commas, semicolons, tabs or blanks. A first
-            line may name the columns; lines that begin with ``#`` are skipped. Lines need not be in order.
-        columns : tuple, optional
-            Columns of slip speed and coefficient, by name or by number from 0.
+            File with a line for each slip speed, or each slip speed at each pressure; values are separated by commas,
+            semicolons, tabs or blanks. A first line may name the columns; lines that begin with ``#`` are skipped.
+            Lines need not be in order.
+        columns : sequence, optional
+            Columns of slip speed and coefficient, and of the pressure if there is one, by name or by number from 0.
         static : float, optional
-            Coefficient up to which a contact at rest is held [1].
-        speed_unit : float, optional
-            Unit of the speeds in the file [m/s], such as 1e-3 for mm/s.
+            Coefficient up to which a contact at rest is held [1], of tables without pressures.
+        speed_unit, pressure_unit : float, optional
+            Units in the file, such as 1e-3 for mm/s, and 1e5 for bar [m/s, Pa].
 
         Raises
         ------
         ValueError
-            If the file has no such table; the message names file and line.
+            If the file has no such table, or not the same speeds at each pressure; the message names file and line.
         """
-        speeds, values = read_columns(path, columns)
-        order = np.argsort(speeds, kind="stable")
+        if len(columns) not in (2, 3):
+            raise ArgumentError("columns", "be two, of speed and coefficient, or three with the pressure", columns)
+        speeds, values, *others = (np.array(one) for one in read_columns(path, columns))
         try:
-            return cls([speeds[k] * speed_unit for k in order], [values[k] for k in order], static)
+            if not others:
+                order = np.argsort(speeds, kind="stable")
+                return cls((speeds[order] * speed_unit).tolist(), values[order].tolist(), static)
+            pressures, order = np.unique(others[0]), np.lexsort([speeds, others[0]])
+            whole, count = np.unique(speeds), len(pressures)
+            if not np.array_equal(speeds[order], np.tile(whole, count)):
+                got = f"{speeds.size} lines for {whole.size} speeds and {count} pressures"
+                raise ArgumentError("table", "have each speed once at each pressure", got=got)
+            rows = values[order].reshape(count, -1).tolist()
+            return cls((whole * speed_unit).tolist(), rows, static, (pressures * pressure_unit).tolist())
         except ArgumentError as error:
             raise error.inside(str(path)) from None
 
-    def _check_table(self) -> None:
-        speeds, values = self.velocity, self.coefficient
-        if len(speeds) < 2 or len(speeds) != len(values):
-            got = f"{len(values)} and {len(speeds)}"
-            raise ArgumentError("coefficient", "have as many values as velocity, two or more", values, got=got)
-        for number, (before, after) in enumerate(pairwise(speeds), start=1):
+    @staticmethod
+    def _check_rising(name: str, values: Any) -> None:
+        if len(values) < 2:
+            raise ArgumentError(name, "have two values or more", values, got=str(len(values)))
+        for number, (before, after) in enumerate(pairwise(values), start=1):
             if after <= before:
-                raise ArgumentError(f"velocity[{number}]", f"be above {before!r}, the one before it", after)
-        if self.static is not None and self.static < values[0]:
-            raise ArgumentError("static", f"be at least {values[0]!r}, the coefficient in slow sliding", self.static)
+                raise ArgumentError(f"{name}[{number}]", f"be above {before!r}, the one before it", after)
+
+    @staticmethod
+    def _check_count(name: str, values: Any, other: str, of_other: Any) -> None:
+        count = len(values) if isinstance(values, tuple) else 1
+        if count != len(of_other) or (other == "velocity" and any(isinstance(one, tuple) for one in values)):
+            words = f"have as many values as {other}, {len(of_other)}"
+            raise ArgumentError(name, words, values, got=str(count) if count != len(of_other) else "lists of values")
+
+    @property
+    def _rows(self) -> Any:
+        """Coefficients at each pressure."""
+        return (self.coefficient,) if self.pressure is None else self.coefficient
+
+    @property
+    def _statics(self) -> Any:
+        """Coefficient at rest at each pressure."""
+        if self.static is None:
+            return tuple(values[0] for values in self._rows)
+        return (self.static,) if self.pressure is None else self.static
+
+    @property
+    def kernel_code(self) -> str:
+        """Name of its constant in the layout of the march."""
+        return CURVE
+
+    @property
+    def depends_on_pressure(self) -> bool:
+        """Whether friction depends on the pressure."""
+        return self.pressure is not None
+
+    def on(self, area: float) -> TabulatedFriction:
+        """Return the law of a contact that represents an area [m²], with normal forces in place of pressures."""
+        return self if self.pressure is None else replace(self, pressure=[area * one for one in self.pressure])
+
+    @cached_property
+    def sections(self) -> tuple[TabulatedFriction, ...]:
+        """The law at each of its pressures."""
+        if self.pressure is None:
+            return (self,)
+        given = zip(self._rows, self._statics, strict=True)
+        return tuple(replace(self, coefficient=row, static=static, pressure=None) for row, static in given)
+
+    def under(self, normal_force: float) -> FrictionLaw:
+        """Return the law over the speed alone, of a contact of 1 m² about a normal force [N]: at a pressure [Pa]."""
+        if self.pressure is None:
+            return self
+        below = int(np.searchsorted(self.pressure, normal_force, side="right")) - 1
+        if below < 0 or below == len(self.pressure) - 1:
+            return self.sections[max(below, 0)]
+        first, last = self.pressure[below : below + 2]
+        ends = self.sections[below], self.sections[below + 1]
+        return Between(*ends, (normal_force - first) / (last - first), last - first)
+
+    def slope_over_normal(self, velocity: float, normal_force: float) -> float:
+        """Return the change of the coefficient with the normal force on 1 m² [1/N], in sliding at a velocity [m/s]."""
+        law = self.under(normal_force)
+        return law.rise_at(velocity) if isinstance(law, Between) else 0.0
 
     @cached_property
     def curve(self) -> Curve:
         """The coefficient in sliding as a curve in pieces."""
-        self._check_table()
         first = [0.0] if self.velocity[0] > 0.0 else []
         return in_pieces(self._sliding, np.array([*first, *self.velocity]), OF_TABLE, 0.0)
+
+    def parameters(self) -> dict[str, float]:
+        """Return the parameters of the law in the march."""
+        if self.pressure is None:
+            return super().parameters()
+        return {**self.sections[0].parameters(), "static": self.holding, "sections": len(self.pressure)}
+
+    @property
+    def pieces(self) -> Array:
+        """Numbers of its curves behind its parameters in the march."""
+        if self.pressure is None:
+            return self.curve.flat
+        return flat_sections([one.curve for one in self.sections], self.pressure, self._statics)
 
     @cached_property
     def _interpolant(self) -> Any:
         # Imported here, as it takes longer than many a run.
         from scipy.interpolate import PchipInterpolator
 
+        if self.pressure is not None:
+            raise ArgumentError(
+                "pressure", "be chosen before friction is evaluated", got="none; use law.under(pressure)"
+            )
         return PchipInterpolator(self.velocity, self.coefficient)
 
     def _sliding(self, speed: Array) -> Array:
@@ -122,11 +225,15 @@ class TabulatedFriction(FrictionLaw):
         """Slip speed [m/s] up to which its curve is characteristic, for plots."""
         return float(self.velocity[-1])
 
+    @property
+    def holding(self) -> float:
+        """Ratio up to which a contact is held at rest [1], the largest over the pressures."""
+        return float(max(self._statics))
+
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]; at 0, the largest at rest."""
         speed = np.abs(np.asarray(velocity, dtype=float))
-        at_rest = self.coefficient[0] if self.static is None else self.static
-        return np.asarray(np.where(speed == 0.0, at_rest, self._sliding(speed)))
+        return np.asarray(np.where(speed == 0.0, self._statics[0], self._sliding(speed)))
 
     def linearised_at(self, velocity: float) -> Linearised:
         """Return the law linearised about steady sliding at `velocity` [m/s], not 0."""
@@ -135,5 +242,57 @@ class TabulatedFriction(FrictionLaw):
         return Linearised(float(self._interpolant(abs(velocity), 1)))
 
     def __str__(self) -> str:
-        low, high = min(self.coefficient), max(self.coefficient)
-        return f"tabulated, {low:.4g} to {high:.4g} at {len(self.velocity)} speeds up to {self.reach:.3g} m/s"
+        values = [one for row in self._rows for one in row]
+        over = "" if self.pressure is None else f" and {len(self.pressure)} pressures up to {self.pressure[-1]:.3g} Pa"
+        speeds = f"{len(self.velocity)} speeds up to {self.reach:.3g} m/s"
+        return f"tabulated, {min(values):.4g} to {max(values):.4g} at {speeds}{over}"
+
+
+@dataclass(frozen=True)
+class Between(FrictionLaw):
+    """Friction at a pressure between two at which it is given, on a straight line between both.
+
+    Attributes
+    ----------
+    first, last : TabulatedFriction
+        The law at the pressures below and above.
+    share : float
+        Share of the way from the first to the last.
+    distance : float
+        Distance of the pressures [Pa].
+    """
+
+    law: ClassVar[str] = "tabulated"
+    first: TabulatedFriction
+    last: TabulatedFriction
+    share: float
+    distance: float
+
+    def __post_init__(self) -> None:
+        """Leave the checks to the tables."""
+
+    def coefficient_at(self, velocity: Array | float) -> Array:
+        """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]; at 0, the largest at rest."""
+        return (1.0 - self.share) * self.first.coefficient_at(velocity) + self.share * self.last.coefficient_at(
+            velocity
+        )
+
+    def linearised_at(self, velocity: float) -> Linearised:
+        """Return the law linearised about steady sliding at `velocity` [m/s], not 0."""
+        slopes = [one.linearised_at(velocity).slope for one in (self.first, self.last)]
+        return Linearised((1.0 - self.share) * slopes[0] + self.share * slopes[1])
+
+    def rise_at(self, velocity: float) -> float:
+        """Return the change of the coefficient with the pressure [1/Pa], in steady sliding at `velocity` [m/s]."""
+        change = self.last.coefficient_at(velocity) - self.first.coefficient_at(velocity)
+        return float(change) / self.distance
+
+    @property
+    def fastest(self) -> float:
+        """Slip speed up to which its friction was measured [m/s]."""
+        return self.first.fastest
+
+    @property
+    def reach(self) -> float:
+        """Slip speed [m/s] up to which its curve is characteristic, for plots."""
+        return self.first.reach

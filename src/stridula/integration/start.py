@@ -27,6 +27,8 @@ from .forces import forces_of
 ROUND_OFF = 512.0 * np.finfo(float).eps
 # Give of compliant contacts at the start, over the compliance of the bodies.
 FLAT = 1e6
+# Passes for friction that depends on the pressure, and the relative change of forces that ends them.
+PASSES, SETTLED = 40, 1e-13
 # Relative stiffness of coupled modes that is due to rounding.
 STIFFLESS = 1e-13
 # Columns along both tangents.
@@ -155,12 +157,15 @@ class _Start:
         """Slip speed of each contact at the start [m/s]."""
         return np.asarray(np.hypot.reduce(self.speeds, axis=1, initial=0.0))
 
-    def _known_ratios(self, carried: Array) -> Array:
-        """Return the ratios of tangential to normal force of contacts whose motion determines them, NaN for others."""
+    def _known_ratios(self, carried: Array, normals: Array) -> Array:
+        """Return the ratios of tangential to normal force of contacts whose motion determines them, NaN for others.
+
+        `normals` are the forces from which friction takes its pressure [N].
+        """
         ratios, laws = np.full(self.speeds.shape, np.nan), self.contacts.laws
         for i, speeds in enumerate(self.speeds):
             whole = float(self.slip_speeds[i])
-            law = Law(int(self.contacts.codes[i]), laws, i, laws[i, STATIC], 0.0)
+            law = Law(int(self.contacts.codes[i]), laws, i, laws[i, STATIC], float(normals[i]))
             if law.code == at.IN_SERIES:
                 # Its force is known, not the ratio.
                 continue
@@ -220,7 +225,21 @@ class _Start:
         return np.concatenate([self.rows[i, : 1 + self.counts[i]] for i in closed])
 
     def forces(self, closed: Array, first: Array, carried: Array, solve: GaussSeidel) -> Array:
-        """Return the normal and the tangential forces of closed contacts, shape (closed, 1 + tangents)."""
+        """Return the normal and the tangential forces of closed contacts, shape (closed, 1 + tangents).
+
+        Friction that depends on the pressure takes it from the forces of a pass before.
+        """
+        normals = np.zeros(len(self.gaps))
+        over_pressure = any(self.arrays.contacts[i].contact.law.depends_on_pressure for i in closed)
+        for _ in range(PASSES if over_pressure else 1):
+            forces = self._forces_under(normals, closed, first, carried, solve)
+            before, normals[closed] = normals[closed], forces[:, 0]
+            if np.abs(forces[:, 0] - before).max() <= SETTLED * np.abs(before).max():
+                break
+        return forces
+
+    def _forces_under(self, normals: Array, closed: Array, first: Array, carried: Array, solve: GaussSeidel) -> Array:
+        """Do a pass of `forces`, with friction under these normal forces [N]."""
         around, beyond = self._turned(self.arrays.position)
         free = self.modes.free(self.arrays.position + around, first + self._turned(first)[0])
         gap, slip = self._at_first_step(free + self.factors @ self.modes.loads)
@@ -244,7 +263,7 @@ class _Start:
                 has = self.counts[closed] > k
                 slip[closed[has], k] += moved[first_rows[:-1][has] + 1 + k]
             codes[i], laws[i, STATIC] = at.COULOMB, 0.0
-        ratios = self._known_ratios(carried)[closed]
+        ratios = self._known_ratios(carried, normals)[closed]
         for i in np.flatnonzero(np.isfinite(ratios[:, 0])):
             # With a known ratio, the contact is equivalent to one without friction and with an inclined force.
             n, end = first_rows[i : i + 2]

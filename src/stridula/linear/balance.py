@@ -188,11 +188,18 @@ def at_statuses(
     slides = np.array([one == SLIDING for one in status])
     sense = slides * np.where(slip != 0.0, np.sign(slip), np.sign(moved))
     ratio = nothing.copy()
-    for number, contact in enumerate(structure.system.contacts):
-        if status[number] == SLIDING:
+    contacts, found = structure.system.contacts, plain
+    sliding = np.flatnonzero(slides).tolist()
+    over_pressure = any(contacts[number].law.depends_on_pressure for number in sliding)
+    for _ in range(YIELDING if over_pressure else 1):
+        for number in sliding:
             speed = abs(float(slip[number])) or abs(float(velocity[number]))
-            ratio[number] = _ratio_at(speed, contact.friction, structure.system.contact_names[number])
-    return plain, balance_of(structure, status, sense, ratio, anchors, slip, exact, about)
+            law = contacts[number].law.under(float(found.normal_force[number]))
+            ratio[number] = _ratio_at(speed, law, structure.system.contact_names[number])
+        before, found = found.normal_force, balance_of(structure, status, sense, ratio, anchors, slip, exact, about)
+        if np.abs(found.normal_force - before).max(initial=0.0) <= SETTLED * np.abs(before).max(initial=0.0):
+            break
+    return plain, found
 
 
 def _slip_velocities(structure: Structure, velocity: Array, status: Sequence[str]) -> Array:

@@ -182,7 +182,7 @@ def beyond_friction(structure: Structure, at: Balance) -> list[str]:
     words = []
     for k, contact in enumerate(structure.system.contacts):
         if at.status[k] == STICKING:
-            most = float(contact.friction.coefficient_at(0.0)) * float(at.normal_force[k])
+            most = float(contact.law.under(float(at.normal_force[k])).coefficient_at(0.0)) * float(at.normal_force[k])
             pulled = float(np.hypot(at.tangential_force[k], at.lateral_force[k]))
             if pulled > most + least:
                 name = structure.system.contact_names[k]

@@ -141,7 +141,7 @@ class _Search:
         # A set that friction cannot hold gives no information on those that slide.
         if first is not None and self._persists(first) and self._is_unique():
             return self._at(first)[0], ONE
-        sets = self._distinct(list(all_sets(self._margins, self.count)))
+        sets = self._distinct(list(all_sets(self._margins_if_known, self.count)))
         if not sets:
             return None, NONE
         kept = [closed for closed in sets if self._persists(closed)]
@@ -206,6 +206,13 @@ class _Search:
 
     def _margins(self, closed: Array) -> Array:
         return margins_of(self.structure, self._at(closed)[2])
+
+    def _margins_if_known(self, closed: Array) -> Array:
+        """Do `_margins`; a set whose contacts follow the bodies, with no slip speed for their law, is none."""
+        try:
+            return self._margins(closed)
+        except ArgumentError:
+            return -np.ones(self.count)
 
     def _is_unique(self) -> bool:
         """Return whether the work of contact forces on the gaps is positive for every change of the forces.
@@ -375,7 +382,7 @@ def _check_determined(structure: Structure, status: Sequence[str], share: Array)
 
 def _check_friction(structure: Structure) -> None:
     """Raise if friction depends on forces that contacts share arbitrarily when all are closed and slide."""
-    ratio = [float(contact.friction.coefficient_at(1.0)) for contact in structure.system.contacts]
+    ratio = [float(contact.law.under(0.0).coefficient_at(1.0)) for contact in structure.system.contacts]
     _check_determined(structure, [SLIDING] * len(ratio), np.array(ratio))
 
 

@@ -132,7 +132,7 @@ def _reach(
             continue
         rooms.append(_room(float(at.normal_force[k]), abs(normal[k]), ROUND_OFF * np.abs(normal).max()))
         if status == STICKING:
-            hold = float(structure.system.contacts[k].friction.coefficient_at(0.0))
+            hold = float(structure.system.contacts[k].law.under(float(at.normal_force[k])).coefficient_at(0.0))
             kept = float(np.hypot(at.tangential_force[k], at.lateral_force[k]))
             rooms.append(_room(hold * float(at.normal_force[k]) - kept, abs(stuck[k]) + hold * abs(normal[k])))
     return min(rooms) * largest

@@ -144,7 +144,7 @@ def _check(structure: Structure, at: Equilibrium, status: Sequence[str] | None) 
                 at.status[k],
             )
         if at.status[k] == STICKING:
-            most = float(contact.friction.coefficient_at(0.0)) * float(at.normal_force[k])
+            most = float(contact.law.under(float(at.normal_force[k])).coefficient_at(0.0)) * float(at.normal_force[k])
             pulled = float(np.hypot(at.tangential_force[k], at.lateral_force[k]))
             if pulled > most + largest:
                 raise ArgumentError(

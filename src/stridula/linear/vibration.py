@@ -76,7 +76,7 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
     slope, and the contact forces act on other points of it.
     """
     stiffness, damping = structure.stiffness.copy(), structure.damping.copy()
-    share, passing = equilibrium.sense * equilibrium.ratio, structure.passing
+    share, passing = equilibrium.sense * (equilibrium.ratio + _rises(structure, equilibrium)), structure.passing
     held, pushes, closed, stuck = held_rows(structure, equilibrium.status, share)
     held, answers, carries = held.copy(), list[_Answer](), bool(passing.any())
     shifted, shifts = list[Array](), list[Array]()
@@ -118,6 +118,16 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
     by_state, from_velocity, state = _states(kept := [one for one in answers if one.near.state_by_state], structure)
     moved, owners = (from_velocity, from_velocity @ passing), tuple(one.owner for one in kept)
     return Vibration(structure.mass, stiffness, damping, held, pushes, spread, by_state, *moved, state, owners, free)
+
+
+def _rises(structure: Structure, equilibrium: Equilibrium) -> Array:
+    """Return the change of friction per normal force that is due to that of the coefficient, (contacts,)."""
+    found = np.zeros(len(structure.lines))
+    for k, contact in enumerate(structure.system.contacts):
+        if contact.law.depends_on_pressure and equilibrium.status[k] == SLIDING:
+            normal, speed = float(equilibrium.normal_force[k]), abs(float(equilibrium.slip_velocity[k]))
+            found[k] = normal * contact.law.slope_over_normal(speed or 1.0, normal)
+    return found
 
 
 def _add(matrix: Array, factors: Sequence[float], columns: Any, rows: Any) -> None:

@@ -68,7 +68,7 @@ def _differences(law: FrictionLaw) -> Iterator[tuple[str, str]]:
 def law_of_march(law: FrictionLaw) -> tuple[int, Array]:
     """Return the code of a law and its row of parameters."""
     code = CODES[law.kernel_code]
-    row = np.concatenate([np.zeros(LAW_COLUMNS), law.curve.flat if code in (at.CURVE, at.IN_SERIES) else []])
+    row = np.concatenate([np.zeros(LAW_COLUMNS), law.pieces if code in (at.CURVE, at.IN_SERIES) else []])
     for name, value in law.parameters().items():
         row[PARAMETERS[law.kernel_code][name]] = value
     row[NEW_STATE] = law.state_at_landing

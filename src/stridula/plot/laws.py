@@ -46,8 +46,12 @@ def friction(law: FrictionLaw, velocities: Array | Sequence[float] | None = None
             raise ArgumentError("velocities", f"be at least 2 above 0 for {law.law}", velocities)
     figure = Figure(figsize=(6.4, 4.2), layout="constrained", dpi=120)
     axes = figure.subplots()
-    for side in (chosen[chosen < 0.0], chosen[chosen > 0.0]):
-        axes.plot(side, np.sign(side) * law.coefficient_at(side), color=LINE, linewidth=1.5)
+    shades = np.linspace(1.0, 0.3, len(law.sections))
+    for one, shade, words in zip(law.sections, shades, _pressures(law), strict=True):
+        for side in (chosen[chosen < 0.0], chosen[chosen > 0.0]):
+            label = words if side.size and side[-1] == chosen[-1] else None
+            values = np.sign(side) * one.coefficient_at(side)
+            axes.plot(side, values, color=LINE, alpha=shade, linewidth=1.5, label=label)
     if not law.over_decades:
         _draw_rest(axes, law, chosen)
         axes.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
@@ -59,6 +63,12 @@ def friction(law: FrictionLaw, velocities: Array | Sequence[float] | None = None
     words = str(law) if str(law)[0].isalpha() else f"{law.law}, {law}"
     axes.set_title(words[0].upper() + words[1:], fontsize=11)
     return figure
+
+
+def _pressures(law: FrictionLaw) -> list[str | None]:
+    """Return the pressure of each section of a law in words, none without pressures."""
+    given = getattr(law, "pressure", None)
+    return [None] if given is None else [f"{one:.3g} Pa" for one in given]
 
 
 def _velocities(given: Array | Sequence[float]) -> Array:

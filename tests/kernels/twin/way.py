@@ -224,11 +224,12 @@ def with_state(before, moved, give, normal, h, root):
     elastic = isinstance(law, laws.ElasticFriction)
     pull, begun, drive = give * normal, 0.5 * (before.slip + moved), moved - before.slip
     grows = later = rest = 0 * drive
+    least = min(normal, before.normal)
+    rises = np.clip(normal - before.normal, -least, least) / normal
     if before.status == SEPARATED:
         past = 0.5 * laws.ratio_with_state(law, state, begun / h)
     elif before.normal > 0:
         # The normal force to which the friction of the last step has changed: an impulse would not go on.
-        least = min(normal, before.normal)
         now = give * (before.normal + np.clip(normal - before.normal, -least, least))
         if elastic:
             # The force of a joint does not change with the normal force.
@@ -242,11 +243,17 @@ def with_state(before, moved, give, normal, h, root):
         for stage in range(2):
             driven = INNER[stage].sum() * begin + GROWTH[stage] * part * grows
             free = u + part * (driven - np.dot(pull, INNER[stage] @ ratios))
+            risen = 1 + rises * part * (k + INNER[stage].sum())
+            if elastic:
+                law = before.law.under(max(risen * normal, 1e-200))
 
-            def ratio(v, state=state):
+            def ratio(v, state=state, law=law, risen=risen):
                 if elastic:
                     firm = law.stiffness * SHARE * part * h + law.damping
-                    return laws.cut((law.stiffness * state + firm * v) / normal, laws.curve(law.friction, laws.size(v)))
+                    force = laws.cut(
+                        law.stiffness * state + firm * v, risen * normal * laws.curve(law.friction, laws.size(v))
+                    )
+                    return force / normal
                 return laws.ratio_with_state(law, laws.state_after(law, state, v, SHARE * part * h), v)
 
             def error(v, free=free, ratio=ratio):

@@ -177,6 +177,7 @@ def slide_as_prescribed(free: Free, law: Law, before: Before, step: Number) -> T
     """Return the contact of bodies that no force moves along the tangent: the slip is given."""
     slip, last_slip = free.slip, before.slip
     normal = -free.gap / free.w.nn
+    law = under(law, normal)
     if slip == 0.0 or slip + free.strayed == 0.0:
         return Touch(normal, 0.0, float(STICKING), 0.0)
     ratio = sliding_ratio(law, abs(velocity_at(slip, last_slip, before.earlier_slip, step)))

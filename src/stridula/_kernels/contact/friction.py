@@ -27,6 +27,7 @@ from ..layout.laws import (
     PIECES,
     REFERENCE,
     REFERENCE_VELOCITY,
+    SECTIONS,
     SET_VALUED,
     SLIP_DISTANCE,
     SLOPE,
@@ -57,8 +58,8 @@ def holding_ratio(law: Law, was_sticking: bool) -> Number:
     table, row = law.table, law.row
     if law.code == at.STATIC_KINETIC and not was_sticking:
         return table[row, KINETIC]
-    if law.code == at.CURVE and not was_sticking:
-        return curve_at(law, 0.0)[0]
+    if law.code == at.CURVE:
+        return static_of_curve(law) if was_sticking else curve_at(law, 0.0)[0]
     return table[row, STATIC]
 
 
@@ -82,8 +83,76 @@ def sliding_ratio(law: Law, speed: Number) -> Number:
 
 
 @strict
+def section_of(law: Law) -> tuple[int, Number, int]:
+    """Return the section of a curve below the normal force, the share of the next one, and where forces begin."""
+    table, row = law.table, law.row
+    pieces, order, sections = int(table[row, PIECES]), int(table[row, ORDER]), int(table[row, SECTIONS])
+    forces = FIRST_SPEED + pieces + 1 + sections * (pieces + 1 + pieces * order)
+    if sections == 1 or law.normal <= table[row, forces]:
+        return 0, 0.0, forces
+    for k in range(sections - 1):
+        below, above = table[row, forces + k], table[row, forces + k + 1]
+        if law.normal < above:
+            return k, (law.normal - below) / (above - below), forces
+    return sections - 1, 0.0, forces
+
+
+@strict
+def static_of_curve(law: Law) -> Number:
+    """Return the ratio up to which a curve holds at rest under the normal force."""
+    table, row = law.table, law.row
+    if table[row, SECTIONS] == 1.0:
+        return table[row, STATIC]
+    section, share, forces = section_of(law)
+    statics = forces + int(table[row, SECTIONS]) + section
+    return (
+        table[row, statics] if share == 0.0 else (1.0 - share) * table[row, statics] + share * table[row, statics + 1]
+    )
+
+
+@strict
 def curve_at(law: Law, speed: Number) -> Numbers:
-    """Return the ratio of a curve at a speed, its slope, and the change of the speed over which it bends."""
+    """Return the ratio of a curve at a speed, its slope, and the change of the speed over which it bends.
+
+    Under a normal force between those of two sections it lies on the straight line between them.
+    """
+    if law.table[law.row, SECTIONS] == 1.0:
+        return curve_of_section(law, 0, speed)
+    section, share, _ = section_of(law)
+    ratio, slope, bend = curve_of_section(law, section, speed)
+    if share == 0.0:
+        return ratio, slope, bend
+    other, steeper, sharper = curve_of_section(law, section + 1, speed)
+    return (1.0 - share) * ratio + share * other, (1.0 - share) * slope + share * steeper, min(bend, sharper)
+
+
+@strict_pasted
+def next_normal(normal: Number, last: Number) -> Number:
+    """Return the normal force at the next step if it goes on as from the last one; an impulse does not go on."""
+    most = min(normal, last)
+    return normal + min(max(normal - last, -most), most)
+
+
+@strict
+def holding_under(law: Law, normal: Number, held: Number) -> Number:
+    """Return the ratio that holds at rest under another normal force, `held` if it does not depend on that."""
+    if law.code != at.CURVE or law.table[law.row, SECTIONS] == 1.0:
+        return held
+    return static_of_curve(under(law, normal))
+
+
+@strict
+def changed_by_normal(law: Law, last_normal: Number, speed: Number) -> Number:
+    """Return the ratio of a set-valued law in sliding, over that under the normal force of the last step."""
+    if law.code != at.CURVE or law.table[law.row, SECTIONS] == 1.0:
+        return 1.0
+    before = curve_at(under(law, last_normal), speed)[0]
+    return curve_at(law, speed)[0] / before if before > 0.0 else 1.0
+
+
+@strict
+def curve_of_section(law: Law, section: int, speed: Number) -> Numbers:
+    """Do `curve_at` for a section."""
     table, row = law.table, law.row
     pieces, order = int(table[row, PIECES]), int(table[row, ORDER])
     low, high = 0, pieces
@@ -97,12 +166,13 @@ def curve_at(law: Law, speed: Number) -> Numbers:
     farther, per_speed = speed - end, 2.0 / (end - begin)
     # From -1 to 1 over the piece.
     place = min((speed - begin) * per_speed - 1.0, 1.0)
-    first = FIRST_SPEED + 2 * (pieces + 1) + low * order
+    bends = FIRST_SPEED + pieces + 1 + section * (pieces + 1 + pieces * order)
+    first = bends + pieces + 1 + low * order
+    bends += low
     ratio, slope = table[row, first + order - 1], 0.0
     for k in range(order - 2, -1, -1):
         slope = slope * place + ratio
         ratio = ratio * place + table[row, first + k]
-    bends = FIRST_SPEED + pieces + 1 + low
     share = 0.5 * (place + 1.0)
     bend = (1.0 - share) * table[row, bends] + share * table[row, bends + 1]
     if farther > 0.0:

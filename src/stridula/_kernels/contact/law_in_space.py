@@ -46,6 +46,7 @@ def slide_as_prescribed(free: FreeInSpace, law: Law, before: BeforeInSpace, step
     gap, slips, strays, w = free.gap, free.slips, free.strays, free.w
     was, last, earlier = before.status, before.slip, before.earlier_slip
     normal, size = -gap / w.nn, size_of(slips)
+    law = under(law, normal)
     if size == 0.0 or size_of(plus(slips, 1.0, strays)) == 0.0:
         return TouchInSpace(normal, NOTHING, float(STICKING), 0.0)
     way = over(slips, size)

@@ -26,14 +26,18 @@ from ..layout.laws import (
 )
 from .friction import (
     LEAST_FORCE,
+    changed_by_normal,
     curve_at,
     deflected,
     holding_ratio,
+    holding_under,
+    next_normal,
     next_state,
     ratio_after,
     sliding_ratio,
     speed_scale,
     state_ratio,
+    under,
     within,
 )
 
@@ -148,15 +152,21 @@ def slide_through(
 
 
 @strict_pasted
+def breaks_at(ratio: Number, grows: Number, held: Number, held_grows: Number, sense: Number) -> Number:
+    """Return the share of a step after which a ratio that grows in a straight line reaches a limit that does so."""
+    nearer = sense * grows - held_grows
+    return min(max((held - sense * ratio) / nearer, 0.0), 1.0) if nearer != 0.0 else 0.0
+
+
+@strict_pasted
 def broken_before(
-    earlier: float, grows: float, held: Number, sliding: float, sense: Number
+    earlier: float, grows: float, broke: Number, sliding: float, sense: Number
 ) -> tuple[float, float, float]:
     """Return the past part of the ratio of a stick that broke within the last step, and its slip for a pull of one.
 
-    The ratio grew from `earlier` until it was `held` and has been that of `sliding` since. The last value is the share
-    of the last step that slid, weighted.
+    The ratio grew from `earlier` until it `broke` and has been that of `sliding` since. The last value is the share of
+    the last step that slid, weighted.
     """
-    broke = min(max((sense * held - earlier) / grows, 0.0), 1.0) if grows != 0.0 else 0.0
     stuck, left = 0.5 * broke * broke, 0.5 * (1.0 - broke * broke)
     past = stuck * earlier + grows * broke**3 / 3.0 + left * sense * sliding
     return past, grows * (1.0 - broke**3) / 3.0 + left * (earlier - sense * sliding), left
@@ -190,18 +200,21 @@ def ratio_over_step(
         # held it there, twice its past part.
         earlier = 2.0 * past if before.normal > 0.0 else needed
         grows = needed - earlier
-        if free.let_go <= 0.5 and abs(needed) <= held and abs(needed + grows) <= held:
+        held_later = holding_under(law, next_normal(normal, before.normal), held)
+        if free.let_go <= 0.5 and abs(needed) <= held and abs(needed + grows) <= held_later:
             return needed, 0.5 * needed, STICKING, 1.0
         drive = Drive(pull * driven, pull * grows)
         if abs(needed) > held:
             sense = 1.0 if needed > 0.0 else -1.0
             slides = sense * ratio_of(0.0, sense, law, step)
-            past, begun, left = broken_before(earlier, grows, held, slides, sense)
+            held_before = holding_under(law, before.normal, held)
+            broke = breaks_at(earlier, grows, held_before, held - held_before, sense)
+            past, begun, left = broken_before(earlier, grows, broke, slides, sense)
             begun += left * (driven - needed)
             more, rest, stuck = slide_through(pull * begun, 0.0, drive, pull, sense, law, step)
             return past + more, rest, STOPPED if stuck > 0.0 else SLIDING, stuck
         sense = 1.0 if needed + grows > 0.0 else -1.0
-        broke = min(max((sense * held - needed) / grows, 0.0), 1.0) if abs(needed) < held else 0.0
+        broke = breaks_at(needed, grows, held, held_later - held, sense)
         first, less = moments(0.0, broke, needed, needed + 0.5 * broke * grows, needed + broke * grows)
         more, rest, stuck = slide_through(0.0, broke, drive, pull, sense, law, step)
         ratio = 0.5 * needed - grows / 6.0 + first + more
@@ -216,7 +229,9 @@ def ratio_over_step(
         more, rest, stuck = slide_through(0.0, 0.0, drive, pull, sense, law, step)
         return past + more, rest, STOPPED if stuck > 0.0 else SLIDING, stuck
     begun = 0.5 * (last + moved)
-    if was != SLIDING:
+    if was == SLIDING:
+        past *= changed_by_normal(law, before.normal, abs(last) / step)
+    else:
         # It lands: half of its force acts before the step.
         if free.let_go <= 0.5 and abs(needed) <= held:
             return needed, 0.5 * needed, STICKING, 1.0
@@ -316,6 +331,9 @@ def ratio_with_state(normal: Number, slip: Number, w: Compliance, law: Law, befo
     was, last, state, past = before.status, before.slip, before.state, before.past
     pull, moved = w.tt * normal, slip + w.tn * normal
     begun, drive, grows = 0.5 * (last + moved), moved - last, 0.0
+    # Within the step the limit of a joint changes with the normal force, by this share of it.
+    pressed_now = max(normal, LEAST_FORCE)
+    rises = next_normal(normal, before.normal) / pressed_now - 1.0 if law.code == at.IN_SERIES else 0.0
     elastic = law.code == at.IN_SERIES
     if was == SEPARATED:
         past = 0.5 * state_ratio(law, state, begun / step)
@@ -323,7 +341,7 @@ def ratio_with_state(normal: Number, slip: Number, w: Compliance, law: Law, befo
         # The force of a joint does not change with the normal force.
         share = 1.0 if elastic else changed_to(normal, before.normal) / before.normal
         grows = drive - (last - before.earlier_slip) - w.tt * share * before.tangential
-        past = past * before.normal / normal if elastic else past
+        past = past * before.normal / pressed_now if elastic else past
     slip_now = begun - pull * past - grows / 6.0
     if elastic:
         count = parts_of_joint(w.tt, abs(last), before.normal, law)
@@ -335,15 +353,20 @@ def ratio_with_state(normal: Number, slip: Number, w: Compliance, law: Law, befo
         begin, left = k * size, 1.0 - (k + 1.0) * size
         driven = drive + grows * begin
         free = slip_now + size * (STAGE * driven + GROWTH_AT_STAGE * size * grows)
-        velocity, first = velocity_after(free / step, pulled, velocity, law, state, time)
+        risen = 1.0 + rises * (begin + STAGE * size)
+        pressed = under(law, risen * normal) if elastic else law
+        velocity, first = velocity_after(free / step, pulled * risen, velocity, pressed, state, time)
         rest_of_part = size * step - time
         if elastic:
-            state = deflected(law, state, first, time, rest_of_part)
+            state = deflected(pressed, state, first, time, rest_of_part)
+            first *= risen
         else:
             state = next_state(law, state, velocity, rest_of_part)
         free = slip_now + size * (driven + 0.5 * size * grows - (1.0 - STAGE) * pull * first)
-        velocity, second = velocity_after(free / step, pulled, velocity, law, state, time)
-        state = next_state(law, state, velocity, time)
+        risen = 1.0 + rises * (begin + size)
+        pressed = under(law, risen * normal) if elastic else law
+        velocity, second = velocity_after(free / step, pulled * risen, velocity, pressed, state, time)
+        state, second = next_state(pressed, state, velocity, time), second * risen
         # Weights with which the mean of the slip over the part is that of its stages.
         more = (1.0 - STAGE) * (2.0 * STAGE * size + left) * first + STAGE * (STAGE * size + left) * second
         later, rest = later + size * more, rest + size * ((1.0 - STAGE) * first + STAGE * second - more)

@@ -22,16 +22,21 @@ from ..layout.contact_values import (
 )
 from ..layout.laws import BRISTLE_DAMPING, BRISTLE_STIFFNESS, BRISTLE_VISCOUS
 from .friction import (
+    LEAST_FORCE,
     bristle_limit,
     bristles_over,
+    changed_by_normal,
     deflected,
     holding_ratio,
+    holding_under,
     joint_of,
+    next_normal,
     next_state,
     ratio_after,
     sliding_ratio,
     speed_scale,
     state_ratio,
+    under,
 )
 from .slipping import (
     GROWTH_AT_STAGE,
@@ -137,13 +142,13 @@ def solved(matrix: Matrix, vector: Tangents) -> Tangents:
 
 
 @strict_pasted
-def breaks_at(ratio: Tangents, grows: Tangents, held: Number) -> Number:
-    """Return the share of a step after which a ratio that grows in a straight line from below `held` reaches it."""
-    square, half = along(grows, grows), along(ratio, grows)
-    missing = held * held - along(ratio, ratio)
-    if missing <= 0.0 or square == 0.0:
+def breaks_at(ratio: Tangents, grows: Tangents, held: Number, held_grows: Number) -> Number:
+    """Return the share of a step after which a ratio that grows in a straight line reaches a limit that does so."""
+    square = along(grows, grows) - held_grows * held_grows
+    half, missing = along(ratio, grows) - held * held_grows, held * held - along(ratio, ratio)
+    if missing <= 0.0 or (square <= 0.0 and half <= 0.0):
         return 0.0 if missing <= 0.0 else 1.0
-    root = math.sqrt(half * half + square * missing)
+    root = math.sqrt(max(half * half + square * missing, 0.0))
     return min(missing / (half + root) if half >= 0.0 else (root - half) / square, 1.0)
 
 
@@ -235,7 +240,7 @@ def hold_from(begin: Number, drive: DriveInSpace, pull: Matrix, held: Number) ->
         return NOTHING, NOTHING, begin
     last = undone_by(pull, plus(drive.begin, 1.0, drive.grows), 1.0)
     grows = plus(last, -1.0, first)
-    share = 1.0 if size_of(last) <= held else breaks_at(first, grows, held)
+    share = 1.0 if size_of(last) <= held else breaks_at(first, grows, held, 0.0)
     end = begin + share * (1.0 - begin) if share < 1.0 else 1.0
     last = plus(first, share, grows)
     later, past = moments_of(begin, end, first, plus(first, 0.5 * share, grows), last)
@@ -323,7 +328,7 @@ def after_break(
     earlier: Tangents,
     needed: Tangents,
     driven: Tangents,
-    held: Number,
+    broke: Number,
     drive: DriveInSpace,
     pull: Matrix,
     law: Law,
@@ -331,7 +336,6 @@ def after_break(
 ) -> tuple[Any, ...]:
     """Slide on from a stick that broke within the last step; results as those of `ratio_over_step`."""
     grows = plus(needed, -1.0, earlier)
-    broke = breaks_at(earlier, grows, held)
     sliding = sliding_ratio(law, 0.0)
     way = direction_of(plus(earlier, broke, grows) if broke > 0.0 else needed, ALONG_A)
     friction = scaled(sliding, way)
@@ -356,6 +360,7 @@ def ratio_over_step(
     was, last, past = before.status, before.slip, before.past
     pull, moved = scaled_matrix(normal, of_tangents(w)), plus(slips, normal, by_normal(w))
     if was == SLIDING:
+        past = scaled(changed_by_normal(law, before.normal, size_of(last) / step), past)
         return slide_on(past, moved, last, pull, law, step)
     held = holding_ratio(law, was == STICKING and free.let_go <= 0.5)
     missed = plus(moved, 1.0, strays)
@@ -368,12 +373,15 @@ def ratio_over_step(
         earlier = scaled(2.0, past) if before.normal > 0.0 else needed
         grows = plus(needed, -1.0, earlier)
         beyond = plus(needed, 1.0, grows)
-        if free.let_go <= 0.5 and asked <= held and size_of(beyond) <= held:
+        held_later = holding_under(law, next_normal(normal, before.normal), held)
+        if free.let_go <= 0.5 and asked <= held and size_of(beyond) <= held_later:
             return needed, scaled(0.5, needed), STICKING, 1.0
         drive = DriveInSpace(missed, NOTHING if is_beyond(needed) else times(pull, grows))
         if asked > held:
-            return after_break(earlier, needed, driven, held, drive, pull, law, step)
-        broke = breaks_at(needed, grows, held)
+            held_before = holding_under(law, before.normal, held)
+            broke = breaks_at(earlier, grows, held_before, held - held_before)
+            return after_break(earlier, needed, driven, broke, drive, pull, law, step)
+        broke = breaks_at(needed, grows, held, held_later - held)
         at_break = plus(needed, broke, grows)
         way = direction_of(at_break, direction_of(beyond, ALONG_A))
         first, less = moments_of(0.0, broke, needed, plus(needed, 0.5 * broke, grows), at_break)
@@ -574,6 +582,8 @@ def ratio_with_state(
     pull, moved = scaled_matrix(normal, of_tangents(w)), plus(slips, normal, by_normal(w))
     begun, drive, grows = scaled(0.5, plus(last, 1.0, moved)), plus(moved, -1.0, last), NOTHING
     elastic = law.code == at.IN_SERIES
+    pressed_now = max(normal, LEAST_FORCE)
+    rises = next_normal(normal, before.normal) / pressed_now - 1.0 if elastic else 0.0
     if was == SEPARATED:
         past = scaled(0.5, ratio_of_state(law, state, over(begun, step)))
     elif before.normal > 0.0:
@@ -581,14 +591,14 @@ def ratio_with_state(
         share = 1.0 if elastic else changed_to(normal, before.normal) / before.normal
         dragged = times(scaled_matrix(share, of_tangents(w)), before.tangential)
         grows = plus(plus(drive, -1.0, plus(last, -1.0, earlier)), -1.0, dragged)
-        past = scaled(before.normal / normal, past) if elastic else past
+        past = scaled(before.normal / pressed_now, past) if elastic else past
     slip = plus(plus(begun, -1.0, times(pull, past)), -1.0 / 6.0, grows)
     squares = along(slip, slip) + along(drive, drive)
     pulled = 0.5 * (pull.aa + pull.bb)
     if squares > 0.0:
         pulled = (along(slip, times(pull, slip)) + along(drive, times(pull, drive))) / squares
     if elastic:
-        count = parts_of_joint(pulled / normal, size_of(last), before.normal, law)
+        count = parts_of_joint(pulled / pressed_now, size_of(last), before.normal, law)
     else:
         count = parts_with_state(size_of(slip), size_of(drive), pulled, law, step)
     size, later, rest, speed = 1.0 / count, NOTHING, NOTHING, size_of(slip) / step
@@ -597,12 +607,18 @@ def ratio_with_state(
         begin = k * size
         driven = plus(drive, begin, grows)
         free = plus(plus(slip, size * STAGE, driven), size * GROWTH_AT_STAGE * size, grows)
-        velocity, first = velocity_after(over(free, step), matrix, speed, law, state, time)
-        state, speed = state_between(law, state, velocity, first, time, size * step - time), size_of(velocity)
+        risen = 1.0 + rises * (begin + STAGE * size)
+        pressed = under(law, risen * normal) if elastic else law
+        velocity, first = velocity_after(over(free, step), scaled_matrix(risen, matrix), speed, pressed, state, time)
+        state, speed = state_between(pressed, state, velocity, first, time, size * step - time), size_of(velocity)
+        first = scaled(risen, first)
         driven = plus(driven, 0.5 * size, grows)
         free = plus(plus(slip, size, driven), -size * (1.0 - STAGE), times(pull, first))
-        velocity, second = velocity_after(over(free, step), matrix, speed, law, state, time)
-        state, speed = state_after(law, state, velocity, time), size_of(velocity)
+        risen = 1.0 + rises * (begin + size)
+        pressed = under(law, risen * normal) if elastic else law
+        velocity, second = velocity_after(over(free, step), scaled_matrix(risen, matrix), speed, pressed, state, time)
+        state, speed = state_after(pressed, state, velocity, time), size_of(velocity)
+        second = scaled(risen, second)
         more, less = stage_moments(begin, size, first, second)
         later, rest = plus(later, 1.0, more), plus(rest, 1.0, less)
         slip = scaled(step, velocity)

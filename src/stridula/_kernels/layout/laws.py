@@ -14,6 +14,9 @@ BRISTLE_STIFFNESS, BRISTLE_DAMPING, BRISTLE_VISCOUS = range(3, 6)
 REFERENCE, DIRECT, EVOLVING, SLIP_DISTANCE, REFERENCE_VELOCITY = range(5)
 # A curve over the slip speed in pieces: their number, that of the coefficients of each, and the slope beyond the last.
 PIECES, ORDER, END_SLOPE = range(1, 4)
+# Its sections over the normal force, of which a curve has one: their coefficients lie one behind the other, then the
+# forces of sections and their ratios at rest.
+SECTIONS = 6
 # Behind those of a curve: the spring and the dashpot in series with the friction.
 JOINT_STIFFNESS, JOINT_DAMPING = range(4, 6)
 # State of a new contact.
@@ -25,7 +28,7 @@ FIRST_SPEED = LAW_COLUMNS
 _WEAKENING = {"static": STATIC, "kinetic": KINETIC, "velocity": VELOCITY}
 _BRISTLES = {"stiffness": BRISTLE_STIFFNESS, "damping": BRISTLE_DAMPING, "viscous": BRISTLE_VISCOUS}
 _AGES = {"slip_distance": SLIP_DISTANCE, "velocity": REFERENCE_VELOCITY}
-_CURVE = {"static": STATIC, "pieces": PIECES, "order": ORDER, "end_slope": END_SLOPE}
+_CURVE = {"static": STATIC, "pieces": PIECES, "order": ORDER, "end_slope": END_SLOPE, "sections": SECTIONS}
 _RATE_AND_STATE = {"reference": REFERENCE, "a": DIRECT, "b": EVOLVING, **_AGES}
 PARAMETERS = {
     "COULOMB": {"coefficient": STATIC},
