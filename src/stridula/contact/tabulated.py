@@ -175,12 +175,15 @@ class TabulatedFriction(FrictionLaw):
             return self.sections[max(below, 0)]
         first, last = self.pressure[below : below + 2]
         ends = self.sections[below], self.sections[below + 1]
-        return Between(*ends, (normal_force - first) / (last - first), last - first)
+        return Between(*ends, (normal_force - first) / (last - first))
 
     def slope_over_normal(self, velocity: float, normal_force: float) -> float:
         """Return the change of the coefficient with the normal force on 1 m² [1/N], in sliding at a velocity [m/s]."""
-        law = self.under(normal_force)
-        return law.rise_at(velocity) if isinstance(law, Between) else 0.0
+        if self.pressure is None or not self.pressure[0] <= normal_force < self.pressure[-1]:
+            return 0.0
+        below = int(np.searchsorted(self.pressure, normal_force, side="right")) - 1
+        first, last = (float(one.coefficient_at(velocity)) for one in self.sections[below : below + 2])
+        return (last - first) / (self.pressure[below + 1] - self.pressure[below])
 
     @cached_property
     def curve(self) -> Curve:
@@ -243,7 +246,7 @@ class TabulatedFriction(FrictionLaw):
 
     def __str__(self) -> str:
         values = [one for row in self._rows for one in row]
-        over = "" if self.pressure is None else f" and {len(self.pressure)} pressures up to {self.pressure[-1]:.3g} Pa"
+        over = "" if self.pressure is None else f", {len(self.pressure)} pressures up to {self.pressure[-1]:.3g} Pa"
         speeds = f"{len(self.velocity)} speeds up to {self.reach:.3g} m/s"
         return f"tabulated, {min(values):.4g} to {max(values):.4g} at {speeds}{over}"
 
@@ -258,15 +261,12 @@ class Between(FrictionLaw):
         The law at the pressures below and above.
     share : float
         Share of the way from the first to the last.
-    distance : float
-        Distance of the pressures [Pa].
     """
 
     law: ClassVar[str] = "tabulated"
     first: TabulatedFriction
     last: TabulatedFriction
     share: float
-    distance: float
 
     def __post_init__(self) -> None:
         """Leave the checks to the tables."""
@@ -281,11 +281,6 @@ class Between(FrictionLaw):
         """Return the law linearised about steady sliding at `velocity` [m/s], not 0."""
         slopes = [one.linearised_at(velocity).slope for one in (self.first, self.last)]
         return Linearised((1.0 - self.share) * slopes[0] + self.share * slopes[1])
-
-    def rise_at(self, velocity: float) -> float:
-        """Return the change of the coefficient with the pressure [1/Pa], in steady sliding at `velocity` [m/s]."""
-        change = self.last.coefficient_at(velocity) - self.first.coefficient_at(velocity)
-        return float(change) / self.distance
 
     @property
     def fastest(self) -> float:
