@@ -15,6 +15,7 @@ from stridula.verification import (
     impacts,
     instabilities,
     jams,
+    joints,
     laws,
     linings,
     orders,
@@ -207,6 +208,20 @@ def test_a_string_out_of_tune_falls_short(monkeypatch):
     monkeypatch.setattr(strings.Bowed, "string", property(lambda self: sharp))
     short = {row.quantity for row in strings.motion(case, case.run(), "bow") if not row.holds}
     assert "bow: period" in short
+
+
+def test_a_stiffer_joint_and_another_friction_are_missed(monkeypatch):
+    monkeypatch.setattr(joints, "JOINT", 1.01 * joints.JOINT)
+    assert "first harmonic" in missed(joints.damper())
+    monkeypatch.undo()
+    monkeypatch.setattr(joints, "LIMIT", 1.01 * joints.LIMIT)
+    assert "first harmonic" in missed(joints.damper())
+    monkeypatch.undo()
+    contact = joints.PointContact
+    monkeypatch.setattr(
+        joints, "PointContact", lambda *on, **own: contact(*on, **{**own, "stiffness": 1.001 * 1973.92})
+    )
+    assert "lowest point" in missed(joints.fall())
 
 
 def test_a_mass_on_a_stiffer_contact_vibrates_otherwise(monkeypatch):
