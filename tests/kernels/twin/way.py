@@ -73,7 +73,9 @@ def on_its_way(before, free, normal, h):
     if laws.has_state(law):
         scale = 1e-9 if isinstance(law, laws.ElasticFriction) else law.velocity * 1e-12
         ratio, past, state = with_state(before, moved, give, normal, h, partial(_root, scale))
-        slow = laws.counts_as_sticking(law.under(normal), state, (moved - pull * ratio) / h)
+        least = min(normal, before.normal)
+        later = normal + np.clip(normal - before.normal, -least, least)
+        slow = laws.counts_as_sticking(law.under(max(later, 1e-200)), state, (moved - pull * ratio) / h)
         return Way(ratio, past, STICKING if slow else SLIDING, 0.0, state)
     begun, past = 0.5 * (last + moved), before.past
     # Let go, it never sticks.
@@ -276,7 +278,8 @@ def _parts(law, before, u, drive, pull, h):
             pull = _along(u, drive, pull)
         limit = max(laws.curve(law.friction, 0.0) * before.normal, 1e-200)
         passed = 2 * laws.size(before.slip) * law.stiffness / limit
-        return int(min(1 + max(4 * np.sqrt(pull / law.normal_force * law.stiffness), min(passed, 8)), 64))
+        passed = passed if passed <= 8 else 64 / passed
+        return int(min(1 + max(4 * np.sqrt(pull / law.normal_force * law.stiffness), passed), 64))
     if not isinstance(law, st.LuGre):
         return int(min(2 + (abs(u) + abs(drive)) / law.slip_distance, 64))
     if np.ndim(pull):

@@ -47,7 +47,7 @@ SEPARATED, STICKING, SLIDING, STOPPED = 0, 1, 2, 3
 MOST_PARTS, REVERSALS = 64, 3
 # Bend of the law in a part; phase of bristles in a part; ageing in a part.
 PART, PHASE, AGEING = 0.5, 0.25, 1.0
-# Most deflections of a joint that divide the slip of a step.
+# Most deflections of a joint that divide the slip of a step; where it passes more, the joint hardly matters.
 REACHES = 8.0
 # First stage of the implicit rule, as a share of a part.
 STAGE = 1.0 - math.sqrt(0.5)
@@ -304,7 +304,10 @@ def parts_of_joint(softness: Number, last_slip: Number, last_normal: Number, law
     """
     stiffness = law.table[law.row, JOINT_STIFFNESS]
     limit = max(sliding_ratio(law, 0.0) * last_normal, LEAST_FORCE)
-    count = 1.0 + max(math.sqrt(softness * stiffness) / PHASE, min(2.0 * last_slip * stiffness / limit, REACHES))
+    passed = 2.0 * last_slip * stiffness / limit
+    if passed > REACHES:
+        passed = REACHES * REACHES / passed
+    count = 1.0 + max(math.sqrt(softness * stiffness) / PHASE, passed)
     return int(min(count, float(MOST_PARTS)))
 
 
