@@ -266,7 +266,12 @@ def test_a_damaged_packed_matrix_is_reported(tmp_path):
     ("name", "key", "value", "message"),
     [
         ("squeal", "contact.stiffness", -1, "contact.stiffness must be above 0, got -1"),
-        ("squeal", "contact.stiffness", "5 kg", "contact.stiffness must be a number in N/m, N/mm, kN/m or kN/mm, got '5 kg'"),
+        (
+            "squeal",
+            "contact.stiffness",
+            "5 kg",
+            "contact.stiffness must be a number in N/m, N/mm, kN/m or kN/mm, got '5 kg'",
+        ),
         ("squeal", "contact.stiffness", {"kind": "linear"}, "contact.stiffness.stiffness must be given"),
         ("squeal-on-plate", "in_plane", "no way", "bodies.plate.in_plane must be true or false, got 'no way'"),
         ("pad-on-disc", "bodies.disc.held.0.directions", ["r"], "bodies.disc.held.0.place must be given"),
