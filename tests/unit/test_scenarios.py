@@ -95,7 +95,10 @@ def test_another_shape_starts_a_section_afresh():
         ({"length": 1}, "key must name one place, got 'length', which fits slider.length, track.length"),
         ({"frction": 1}, "key must be a key of the scenario, got 'frction'; did you mean 'friction'?"),
         ({"drives.3.x": 1}, "got 'drives.3.x'; did you mean 'drives.0.x'?"),
-        ({"contact": 1}, "set one of its keys at, friction, gap, stiffness, point, name"),
+        (
+            {"contact": 1},
+            "set one of its keys at, friction, gap, stiffness, tangential_stiffness, tangential_damping, point, name",
+        ),
         ({"angle": "20 mm"}, "slider.angle must be a number in rad or deg, got '20 mm'"),
         ({"angle": "95 deg"}, "slider.angle must be strictly between -pi/2 and pi/2"),
         ({"elements": True}, "slider.elements must be a whole number, got True"),
