@@ -62,7 +62,7 @@ class ElasticFriction(FrictionLaw):
         """The coefficient in sliding as a curve in pieces."""
         if not self.friction.depends_on_speed:
             return in_pieces(self.friction.coefficient_at, np.array([0.0, 1.0]), 1, 0.0)
-        return FrictionLaw.curve.func(self)  # type: ignore[attr-defined]
+        return super().curve
 
     def parameters(self) -> dict[str, float]:
         """Return the parameters of the law in the march."""

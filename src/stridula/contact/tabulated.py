@@ -273,9 +273,8 @@ class Between(FrictionLaw):
 
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]; at 0, the largest at rest."""
-        return (1.0 - self.share) * self.first.coefficient_at(velocity) + self.share * self.last.coefficient_at(
-            velocity
-        )
+        first, last = (one.coefficient_at(velocity) for one in (self.first, self.last))
+        return np.asarray((1.0 - self.share) * first + self.share * last)
 
     def linearised_at(self, velocity: float) -> Linearised:
         """Return the law linearised about steady sliding at `velocity` [m/s], not 0."""

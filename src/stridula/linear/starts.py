@@ -85,11 +85,8 @@ def start_of(system: System, asked: InitialEquilibrium) -> Start:
     friction_state = [_states(*one) for one in zip(laws, slips, ways, states.tolist(), strict=True)]
     for k, contact in enumerate(system.contacts):
         if contact.tangential_stiffness is not None and at.status[k] == STICKING:
-            held = (
-                at.tangential_force[k] / contact.tangential_stiffness,
-                at.lateral_force[k] / contact.tangential_stiffness,
-            )
-            friction_state[k] = _along(ways[k], held)
+            give = structure.joint_give(k)
+            friction_state[k] = _along(ways[k], (give * at.tangential_force[k], give * at.lateral_force[k]))
     return Start(_closed(whole, at.status, position), velocity, np.array(friction_state), at.found, exponent)
 
 

@@ -8,7 +8,7 @@ from ..lanes.operations import Number, Pair, choose, magnitude
 from ..layout import columns as at
 from ..layout.contact_values import Before, Compliance, Free, Law, Touch
 from ..layout.laws import STATIC
-from .friction import counts_as_sticking, joint_of, next_normal, set_valued, sliding_ratio, under
+from .friction import joint_holds, joint_of, next_normal, set_valued, sliding_ratio, sticking_speed, under
 from .slipping import SEPARATED, SLIDING, STICKING, ratio_over_step, ratio_with_state
 
 # Most evaluations of the ratio for the normal force, those before it is sought by bisection, and the relative change of
@@ -55,10 +55,13 @@ def ratio_under(normal: Number, free: Free, law: Law, before: Before, step: Numb
         return ratio, past, before.state, status, stuck
     ratio, past, state = ratio_with_state(normal, slip, w, law, before, step)
     moved = slip + (w.tn - ratio * w.tt) * normal
-    # A joint that slips is at the limit of the next step.
-    law = under(law, next_normal(normal, before.normal))
-    stiffness, damping = joint_of(law)
-    sticks = counts_as_sticking(law, abs(moved) / step, abs(stiffness * state + damping * moved / step))
+    if law.code == at.IN_SERIES:
+        # A joint that slips is at the limit of the next step.
+        law = under(law, next_normal(normal, before.normal))
+        stiffness, damping = joint_of(law)
+        sticks = joint_holds(law, abs(moved) / step, abs(stiffness * state + damping * moved / step))
+    else:
+        sticks = abs(moved) < step * sticking_speed(law)
     return ratio, past, state, STICKING if sticks else SLIDING, 0.0
 
 

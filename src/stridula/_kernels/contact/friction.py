@@ -126,30 +126,6 @@ def curve_at(law: Law, speed: Number) -> Numbers:
     return (1.0 - share) * ratio + share * other, (1.0 - share) * slope + share * steeper, min(bend, sharper)
 
 
-@strict_pasted
-def next_normal(normal: Number, last: Number) -> Number:
-    """Return the normal force at the next step if it goes on as from the last one; an impulse does not go on."""
-    most = min(normal, last)
-    return normal + min(max(normal - last, -most), most)
-
-
-@strict
-def holding_under(law: Law, normal: Number, held: Number) -> Number:
-    """Return the ratio that holds at rest under another normal force, `held` if it does not depend on that."""
-    if law.code != at.CURVE or law.table[law.row, SECTIONS] == 1.0:
-        return held
-    return static_of_curve(under(law, normal))
-
-
-@strict
-def changed_by_normal(law: Law, last_normal: Number, speed: Number) -> Number:
-    """Return the ratio of a set-valued law in sliding, over that under the normal force of the last step."""
-    if law.code != at.CURVE or law.table[law.row, SECTIONS] == 1.0:
-        return 1.0
-    before = curve_at(under(law, last_normal), speed)[0]
-    return curve_at(law, speed)[0] / before if before > 0.0 else 1.0
-
-
 @strict
 def curve_of_section(law: Law, section: int, speed: Number) -> Numbers:
     """Do `curve_at` for a section."""
@@ -178,6 +154,30 @@ def curve_of_section(law: Law, section: int, speed: Number) -> Numbers:
     if farther > 0.0:
         return ratio + table[row, END_SLOPE] * farther, table[row, END_SLOPE], bend + farther
     return ratio, slope * per_speed, bend
+
+
+@strict_pasted
+def next_normal(normal: Number, last: Number) -> Number:
+    """Return the normal force at the next step if it goes on as from the last one; an impulse does not go on."""
+    most = min(normal, last)
+    return normal + min(max(normal - last, -most), most)
+
+
+@strict
+def holding_under(law: Law, normal: Number, held: Number) -> Number:
+    """Return the ratio that holds at rest under another normal force, `held` if it does not depend on that."""
+    if law.code != at.CURVE or law.table[law.row, SECTIONS] == 1.0:
+        return held
+    return static_of_curve(under(law, normal))
+
+
+@strict
+def changed_by_normal(law: Law, last_normal: Number, speed: Number) -> Number:
+    """Return the ratio of a set-valued law in sliding, over that under the normal force of the last step."""
+    if law.code != at.CURVE or law.table[law.row, SECTIONS] == 1.0:
+        return 1.0
+    before = curve_at(under(law, last_normal), speed)[0]
+    return curve_at(law, speed)[0] / before if before > 0.0 else 1.0
 
 
 @strict
@@ -349,12 +349,13 @@ def ratio_after(law: Law, state: Number, velocity: Number, time: Number) -> Pair
 
 
 @strict
-def counts_as_sticking(law: Law, speed: Number, felt: Number) -> bool:
-    """Return whether a contact under a law with internal state counts as sticking, at a slip speed.
-
-    In series with a joint it does while the ratio `felt`, that of the joint alone, is below the limit.
-    """
+def sticking_speed(law: Law) -> Number:
+    """Return the slip speed below which a law with internal state counts as sticking, without a joint."""
     table, row = law.table, law.row
-    if law.code == at.IN_SERIES:
-        return felt < FULL * sliding_ratio(law, speed)
-    return speed < (table[row, VELOCITY] if law.code == at.LUGRE else table[row, REFERENCE_VELOCITY])
+    return table[row, VELOCITY] if law.code == at.LUGRE else table[row, REFERENCE_VELOCITY]
+
+
+@strict
+def joint_holds(law: Law, speed: Number, felt: Number) -> bool:
+    """Return whether a contact in series with a joint sticks, at a slip speed: the ratio `felt` of its joint alone."""
+    return felt < FULL * sliding_ratio(law, speed)

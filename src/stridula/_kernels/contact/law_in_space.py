@@ -9,7 +9,7 @@ from ..layout import columns as at
 from ..layout.contact_values import BeforeInSpace, ComplianceInSpace, FreeInSpace, Law, Tangents, TouchInSpace
 from ..layout.laws import NEW_STATE, STATIC
 from .exact import PATIENCE, ROUND_OFF, SLIDING, STICKING, TRIALS, velocity_at
-from .friction import counts_as_sticking, joint_of, next_normal, set_valued, sliding_ratio, under
+from .friction import joint_holds, joint_of, next_normal, set_valued, sliding_ratio, sticking_speed, under
 from .lanewise import lanewise
 from .slipping_in_space import ratio_over_step, ratio_with_state, sticking_forces
 from .tangents import NOTHING, along, over, plus, scaled, size_of, to_normal
@@ -34,11 +34,14 @@ def ratio_under(normal: float, free: FreeInSpace, law: Law, before: BeforeInSpac
     ratio, past, states = ratio_with_state(normal, slips, w, law, before, step)
     per_normal = Tangents(w.an - w.aa * ratio.a - w.ab * ratio.b, w.bn - w.ba * ratio.a - w.bb * ratio.b)
     moved = plus(slips, normal, per_normal)
-    # A joint that slips is at the limit of the next step.
-    law = under(law, next_normal(normal, before.normal))
-    stiffness, damping = joint_of(law)
-    felt = plus(scaled(stiffness, states), damping / step, moved)
-    sticks = counts_as_sticking(law, size_of(moved) / step, size_of(felt))
+    if law.code == at.IN_SERIES:
+        # As in the plane.
+        law = under(law, next_normal(normal, before.normal))
+        stiffness, damping = joint_of(law)
+        felt = plus(scaled(stiffness, states), damping / step, moved)
+        sticks = joint_holds(law, size_of(moved) / step, size_of(felt))
+    else:
+        sticks = size_of(moved) < step * sticking_speed(law)
     return ratio, past, states, STICKING if sticks else SLIDING, 0.0
 
 

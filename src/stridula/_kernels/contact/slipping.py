@@ -334,10 +334,9 @@ def ratio_with_state(normal: Number, slip: Number, w: Compliance, law: Law, befo
     was, last, state, past = before.status, before.slip, before.state, before.past
     pull, moved = w.tt * normal, slip + w.tn * normal
     begun, drive, grows = 0.5 * (last + moved), moved - last, 0.0
+    elastic, pressed_now = law.code == at.IN_SERIES, max(normal, LEAST_FORCE)
     # Within the step the limit of a joint changes with the normal force, by this share of it.
-    pressed_now = max(normal, LEAST_FORCE)
-    rises = next_normal(normal, before.normal) / pressed_now - 1.0 if law.code == at.IN_SERIES else 0.0
-    elastic = law.code == at.IN_SERIES
+    rises = next_normal(normal, before.normal) / pressed_now - 1.0 if elastic else 0.0
     if was == SEPARATED:
         past = 0.5 * state_ratio(law, state, begun / step)
     elif before.normal > 0.0:

@@ -529,6 +529,13 @@ def shortened(ratio: Tangents, most: Number) -> Tangents:
 
 
 @strict_pasted
+def joint_after(law: Law, deflection: Tangents, ratio: Tangents, stage: Number, time: Number) -> Tangents:
+    """Do `friction.deflected` along both tangents."""
+    a = deflected(law, deflection.a, ratio.a, stage, time)
+    return Tangents(a, deflected(law, deflection.b, ratio.b, stage, time))
+
+
+@strict_pasted
 def state_after(law: Law, state: Tangents, velocity: Tangents, time: Number) -> Tangents:
     """Return the internal states after some time at a constant slip velocity, exactly."""
     speed = size_of(velocity)
@@ -539,7 +546,7 @@ def state_after(law: Law, state: Tangents, velocity: Tangents, time: Number) -> 
         stiffness, damping = joint_of(law)
         firm, held = stiffness * time + damping, scaled(stiffness, state)
         ratio = shortened(plus(held, firm, velocity), sliding_ratio(law, speed))
-        return plus(state, time / firm, plus(ratio, -1.0, held))
+        return joint_after(law, state, ratio, time, time)
     return Tangents(next_state(law, state.a, speed, time), state.b)
 
 
@@ -549,8 +556,7 @@ def state_between(
 ) -> Tangents:
     """Do `state_after` from the beginning of a stage to that of the next one; a joint has the rate of the stage."""
     if law.code == at.IN_SERIES:
-        a = deflected(law, state.a, ratio.a, stage, time)
-        return Tangents(a, deflected(law, state.b, ratio.b, stage, time))
+        return joint_after(law, state, ratio, stage, time)
     return state_after(law, state, velocity, time)
 
 
@@ -581,8 +587,7 @@ def ratio_with_state(
     was, last, earlier, state, past = before.status, before.slip, before.earlier_slip, before.state, before.past
     pull, moved = scaled_matrix(normal, of_tangents(w)), plus(slips, normal, by_normal(w))
     begun, drive, grows = scaled(0.5, plus(last, 1.0, moved)), plus(moved, -1.0, last), NOTHING
-    elastic = law.code == at.IN_SERIES
-    pressed_now = max(normal, LEAST_FORCE)
+    elastic, pressed_now = law.code == at.IN_SERIES, max(normal, LEAST_FORCE)
     rises = next_normal(normal, before.normal) / pressed_now - 1.0 if elastic else 0.0
     if was == SEPARATED:
         past = scaled(0.5, ratio_of_state(law, state, over(begun, step)))
