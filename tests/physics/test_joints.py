@@ -156,6 +156,66 @@ def test_errors_fall_with_the_square_of_the_step(axes):
     assert np.log2(errors[0] / errors[-1]) > 3 * 1.8
 
 
+def on_a_belt_by_events(law, mass, spring, dashpot, normal, belt, joint, times):
+    """Places of a mass at rest on a belt, with a joint under friction that changes with the speed, as above."""
+    found, y, time, sense = np.full(times.size, np.nan), np.zeros(3), 0.0, 0.0
+
+    def limit(slip):
+        return float(law.coefficient_at(max(abs(slip), 1e-14))) * normal
+
+    def patch(y, sense):
+        """Acceleration, and the slip velocity of the surface, which the limit moves by its change."""
+        slip = y[1] - belt
+        force = sense * limit(slip) if sense else joint * y[2]
+        acceleration = (-spring * y[0] - dashpot * y[1] - force) / mass
+        slope = np.sign(slip) * law.linearised_at(max(abs(slip), 1e-14)).slope * normal
+        return acceleration, slip - sense * slope * acceleration / joint
+
+    while time < times[-1] * (1.0 - 1e-12):
+
+        def rates(_, y, sense=sense):
+            acceleration, slipped = patch(y, sense)
+            return [y[1], acceleration, y[1] - belt - (slipped if sense else 0.0)]
+
+        def changes(_, y, sense=sense):
+            return sense * patch(y, sense)[1] if sense else abs(joint * y[2]) - limit(y[1] - belt)
+
+        changes.terminal, changes.direction = True, -1 if sense else 1
+        options = {"rtol": 1e-10, "atol": 1e-14, "max_step": 0.02 * sqrt(mass / joint)}
+        part = solve_ivp(rates, (time, times[-1]), y, "DOP853", events=changes, dense_output=True, **options)
+        here = (times >= time) & (times <= part.t[-1])
+        if here.any():
+            found[here] = part.sol(times[here])[0]
+        time, y = part.t[-1], part.y[:, -1].copy()
+        sense = 0.0 if sense else float(np.sign(y[2]))
+        y[2] *= 1.0 if sense else 1.0 - 1e-10
+    return found
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("seed", range(3))
+def test_joints_under_falling_friction_move_as_from_event_to_event(seed, in_space):
+    """At default settings, over eight periods of stick and slip; in space along a line of both tangents."""
+    random = np.random.default_rng(100 + seed)
+    mass, spring = random.uniform(0.3, 2.0), 10.0 ** random.uniform(3.0, 4.0)
+    normal, belt = random.uniform(5.0, 30.0), random.uniform(0.01, 0.1)
+    dashpot, joint = 0.02 * sqrt(spring * mass), spring * random.uniform(3.0, 30.0)
+    law = st.Stribeck(random.uniform(0.4, 0.6), random.uniform(0.2, 0.4), random.uniform(0.05, 0.3))
+    body = st.RigidBody(mass) if in_space else st.PointMass(mass)
+    along = {"velocity": 0.6 * belt, "lateral_velocity": 0.8 * belt} if in_space else {"velocity": belt}
+    contact = st.PointContact(body.centre, st.RigidTrack(**along), friction=law, tangential_stiffness=joint)
+    axes = AXES if in_space else "x"
+    springs = [st.Spring(body.centre, stiffness=spring, direction=axis) for axis in axes]
+    dashpots = [st.Dashpot(body.centre, coefficient=dashpot, direction=axis) for axis in axes]
+    system = st.System(contact, [st.Force(body.centre, y=-normal)], [*springs, *dashpots])
+    probe = st.Displacement(body.centre, "x")
+    run = st.simulate(system, 16.0 * pi * sqrt(mass / spring), probes=[probe]).isel(time=slice(None, None, 20))
+    expected = on_a_belt_by_events(law, mass, spring, dashpot, normal, belt, joint, run["time"].values)
+    found = run["displacement"].values[:, 0] / (0.6 if in_space else 1.0)
+    assert np.abs(found - expected).max() < 1e-5 * np.ptp(expected)
+    assert {1.0, 2.0} <= set(np.unique(run["status"]))
+
+
 VM320 = Damper(
     944.6, np.array([2.4e7]), np.array([7700.0]), 492.096, 0.5, 2.4e7, 0.0, *np.array([[123.024], [209.0], [pi / 2]])
 )

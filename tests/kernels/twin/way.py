@@ -267,7 +267,7 @@ def with_state(before, moved, give, normal, h, root):
         more, less = weighted(part, k * part, ratios)
         later, rest, u = later + more, rest + less, v * h
     if elastic:
-        most = max(laws.curve(law.friction, laws.size(one) / h) for one in (begun, u))
+        most = max(laws.curve(law.friction, laws.size(one) / h) for one in (before.slip, begun, u))
         return laws.cut(past + later, most), rest, state
     return past + later, rest, state
 

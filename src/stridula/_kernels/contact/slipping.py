@@ -374,6 +374,8 @@ def ratio_with_state(normal: Number, slip: Number, w: Compliance, law: Law, befo
         later, rest = later + size * more, rest + size * ((1.0 - STAGE) * first + STAGE * second - more)
         slip_now = velocity * step
     if elastic:
-        most = max(sliding_ratio(law, abs(begun) / step), sliding_ratio(law, abs(velocity)))
+        # Friction that changes with the speed had its limit at the last slip, too.
+        most = max(sliding_ratio(law, abs(last) / step), sliding_ratio(law, abs(velocity)))
+        most = max(most, sliding_ratio(law, abs(begun) / step))
         return within(past + later, most), rest, state
     return past + later, rest, state

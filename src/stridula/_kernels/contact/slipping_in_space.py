@@ -628,6 +628,8 @@ def ratio_with_state(
         later, rest = plus(later, 1.0, more), plus(rest, 1.0, less)
         slip = scaled(step, velocity)
     if elastic:
-        most = max(sliding_ratio(law, size_of(begun) / step), sliding_ratio(law, speed))
+        # As in the plane.
+        most = max(sliding_ratio(law, size_of(last) / step), sliding_ratio(law, speed))
+        most = max(most, sliding_ratio(law, size_of(begun) / step))
         return shortened(plus(past, 1.0, later), most), rest, state
     return plus(past, 1.0, later), rest, state
