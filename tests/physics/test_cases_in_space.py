@@ -34,6 +34,7 @@ QUICK = [
     "string-supports",
     "order-time",
     "order-sliding",
+    "fall-on-a-spring",
 ]
 SLOW = [
     "den-hartog",
@@ -46,6 +47,7 @@ SLOW = [
     "bowed-string",
     "clockwork",
     "lining",
+    "friction-damper",
 ]
 TURNS = [(name, seed) for names, count in ((QUICK, 10), (SLOW, 2)) for name in names for seed in range(count)]
 # Where this string sticks, its tangential force passes zero, and its motion across is rounding.

@@ -54,8 +54,10 @@ def damper() -> Outcome:
         ("stuck", sliding_stability(resting, status="sticking"), sqrt((MOUNT + JOINT) / MASS)),
         ("slipping", sliding_stability(resting, velocity=0.1), sqrt(MOUNT / MASS)),
     ):
-        exponent = complex(found["growth_rate"].values[0], 2.0 * pi * found["frequency"].values[0])
-        rows.append(Row(f"resonance, {words}", expected, abs(exponent), 1e-9 * expected, "round-off", "rad/s"))
+        exponents = found["growth_rate"].values + 2j * pi * found["frequency"].values
+        # In space the mass also moves across, where it has no mount: slower, or without an oscillation.
+        along = float(np.abs(exponents[exponents.imag.argmax()]))
+        rows.append(Row(f"resonance, {words}", expected, along, 1e-9 * expected, "round-off", "rad/s"))
     return Outcome(rows, Sketch("displacement [µm]", "force of the damper [N]", curves))
 
 
