@@ -59,7 +59,7 @@ _HOME = {
         "fit_friction",
     ),
     "checks": ("ArgumentError",),
-    "connections": ("Dashpot", "Spring"),
+    "connections": ("CubicSpring", "Dashpot", "Spring", "TabulatedSpring"),
     "doubtful": ("DoubtfulValue",),
     "drives": ("Force", "Gravity", "ImposedVelocity", "InitialEquilibrium", "InitialState", "InitialVelocity"),
     "histories": ("Constant", "Harmonic", "Ramp", "Sampled"),

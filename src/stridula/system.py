@@ -32,7 +32,7 @@ class System:
         Contacts between the bodies. The first one defines the slider (its tip's body) and the track.
     drives : sequence of Force, ImposedVelocity, Gravity, InitialVelocity, InitialState or InitialEquilibrium, optional
         Loads, prescribed motion and initial conditions.
-    connections : sequence of Spring or Dashpot, optional
+    connections : sequence of Spring, Dashpot, CubicSpring or TabulatedSpring, optional
         Springs and dashpots between bodies.
 
     Raises

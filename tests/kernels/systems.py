@@ -45,6 +45,34 @@ def chain() -> st.System:
     return st.System(contacts, [st.Gravity(), st.Force(two.centre, y=-3.0)], joints)
 
 
+def bent_chain() -> st.System:
+    """The same with springs that harden, that soften, and that have a play with kinks on both sides of the start."""
+    one, two = st.PointMass(0.3, "one"), st.PointMass(0.5, "two")
+    contacts = [
+        st.PointContact(one.centre, BELT, friction=st.StaticKinetic(0.6, 0.4), name="first"),
+        st.PointContact(two.centre, BELT, friction=st.Coulomb(0.3), name="second"),
+    ]
+    joints = [
+        st.CubicSpring(one.centre, stiffness=1e3, cubic=4e8),
+        st.TabulatedSpring(one.centre, two.centre, displacement=[-4e-4, 0.0, 3e-4, 5e-4], force=[-3.0, 0.0, 0.5, 2.5]),
+        st.CubicSpring(two.centre, direction="y", stiffness=5e4, cubic=-2e9),
+        st.TabulatedSpring(two.centre, displacement=[-1e-3, -2e-4, 2e-4, 1e-3], force=[-1.1, -0.1, 0.2, 1.8]),
+        st.Dashpot(one.centre, two.centre, coefficient=1.0),
+    ]
+    return st.System(contacts, [st.Gravity(), st.Force(two.centre, y=-3.0, x=0.2)], joints)
+
+
+def stop_of_a_beam() -> st.System:
+    """Slider on a beam that meets a stop, and hangs on a hardening spring."""
+    bar, rod = track(cutoff=3e3), slider(cutoff=6e3)
+    contact = st.PointContact(rod.tip, bar, at=0.2, friction=st.Coulomb(1.3), gap=1e-8)
+    joints = [
+        st.TabulatedSpring(bar.at(0.35), direction="y", displacement=[-1e-7, -5e-8, 0.0], force=[-0.05, 0.0, 0.0]),
+        st.CubicSpring(rod.root, stiffness=2e3, cubic=1e14),
+    ]
+    return st.System(contact, [st.Force(rod.root, transverse=0.5)], joints)
+
+
 def pad(points=2, name="pad", **changes) -> st.ReducedBody:
     """A block of 0.2 kg: x, y and turn of its middle, and two inner freedoms at each foot, damped together."""
     half, height = 0.03, 0.02
@@ -234,6 +262,8 @@ SYSTEMS = {
     "mass on a belt, joint": (lambda: jointed(oscillator(st.Coulomb(0.6)), 1e4), 2e-4),
     "mass on a belt, damped joint": (lambda: jointed(oscillator(WEAK), 2e4, 3.0), 2e-4),
     "chain on a belt": (chain, 2e-4),
+    "chain of nonlinear springs": (bent_chain, 2e-4),
+    "beam with a stop": (stop_of_a_beam, 5e-6),
     "pad on a shaken belt": (lambda: pad_on(SHAKEN, [st.Coulomb(0.4), WEAK, st.StaticKinetic(0.5, 0.3)]), 1e-4),
     "pad on a beam": (
         lambda: pad_on(

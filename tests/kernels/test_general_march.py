@@ -83,6 +83,12 @@ def slightly(change, system):
         contacts[0] = replace(contacts[0], track=replace(sheet, line=line))
     elif change == "dashpot left out":
         joints = [joint for joint in joints if not isinstance(joint, st.Dashpot)]
+    elif change == "cubic":
+        joints = [replace(one, cubic=one.cubic * (1 + 1e-4)) if hasattr(one, "cubic") else one for one in joints]
+    elif change == "kink":
+        tables = [one for one in joints if hasattr(one, "displacement")]
+        moved = {one: replace(one, displacement=np.multiply(one.displacement, 1.0 + 1e-4)) for one in tables}
+        joints = [moved.get(one, one) for one in joints]
     elif change == "spring":
         joints[0] = replace(joints[0], stiffness=joints[0].stiffness * (1 + 1e-5))
     return st.System(contacts, system.drives, joints)
@@ -100,6 +106,10 @@ def slightly(change, system):
         ("dashpot left out", "beam on a spring"),
         ("dashpot left out", "chain on a belt"),
         ("spring", "frozen contact"),
+        ("cubic", "chain of nonlinear springs"),
+        ("cubic", "beam with a stop"),
+        ("kink", "chain of nonlinear springs"),
+        ("kink", "beam with a stop"),
         ("direction of the line", "diagonal of a plate"),
     ],
 )

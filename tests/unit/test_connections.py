@@ -24,6 +24,18 @@ MAKERS = {
         "direction",
         [None, "w", "axial", 1, (1.0, 0.0), (0.0, 0.0, 0.0)],
     ),
+    "CubicSpring.stiffness": (lambda v: st.CubicSpring(ONE.centre, stiffness=v, cubic=1.0), "stiffness", NUMBERS),
+    "CubicSpring.cubic": (lambda v: st.CubicSpring(ONE.centre, stiffness=1.0, cubic=v), "cubic", NUMBERS),
+    "CubicSpring.second": (
+        lambda v: st.CubicSpring(ONE.centre, v, stiffness=1.0, cubic=1.0),
+        "second",
+        [ONE, 0.1, ONE.centre],
+    ),
+    "TabulatedSpring.direction": (
+        lambda v: st.TabulatedSpring(ONE.centre, displacement=[0.0, 1.0], force=[0.0, 1.0], direction=v),
+        "direction",
+        ["w", None],
+    ),
     "Dashpot.first": (lambda v: st.Dashpot(v, coefficient=1.0), "first", [None, ONE]),
     "Dashpot.coefficient": (lambda v: st.Dashpot(ONE.centre, coefficient=v), "coefficient", [*NUMBERS, 0.0, -1.0]),
     "Dashpot.direction": (lambda v: st.Dashpot(ONE.centre, coefficient=1.0, direction=v), "direction", ["w", None]),
@@ -66,6 +78,21 @@ def test_bad_arguments_are_named_with_value_and_range(make, name, value):
     assert brief(value) in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("displacement", "force", "words"),
+    [
+        ([0.0], [0.0], r"^displacement must have two values or more, got 1"),
+        ([0.0, 1.0, 1.0], [0.0, 1.0, 2.0], r"^displacement\[2\] must be above 1.0, the one before it, got 1.0"),
+        ([0.0, NAN], [0.0, 1.0], r"^displacement\[1\] must be finite, got nan"),
+        ([0.0, 1.0], [0.0, 1.0, 2.0], r"^force must have as many values as displacement, 2, got 3"),
+        ([0.0, 1.0], "ab", r"^force must be a list of numbers, got 'ab'"),
+    ],
+)
+def test_tables_of_springs_are_checked(displacement, force, words):
+    with pytest.raises(ValueError, match=words):
+        st.TabulatedSpring(ONE.centre, displacement=displacement, force=force)
+
+
 def test_a_beam_track_lies_flat():
     with pytest.raises(ValueError, match=r"^inclination must be 0 on a ModalBeam, got 0.1"):
         st.PointContact(ROD.tip, BAR, at=0.2, inclination=0.1)
@@ -91,7 +118,9 @@ def test_lists_of_systems():
     for value in (None, spring, "spring", 3):
         with pytest.raises(ValueError, match=r"^connections must be a list of connections, got "):
             st.System(contact, (), value)
-    with pytest.raises(ValueError, match=r"^connections\[0\] must be a Spring or Dashpot, got "):
+    with pytest.raises(
+        ValueError, match=r"^connections\[0\] must be a Spring or Dashpot or CubicSpring or TabulatedSpring, got "
+    ):
         st.System(contact, (), [contact])
     with pytest.raises(ValueError, match=r"^contact must hold at least one PointContact, got none"):
         st.System([])

@@ -10,6 +10,7 @@ from documented import documented
 
 import stridula as st
 from stridula.verification import (
+    chains,
     clockwork,
     falling,
     impacts,
@@ -222,6 +223,13 @@ def test_a_stiffer_joint_and_another_friction_are_missed(monkeypatch):
         joints, "PointContact", lambda *on, **own: contact(*on, **{**own, "stiffness": 1.001 * 1973.92})
     )
     assert "lowest point" in missed(joints.fall())
+
+
+def test_a_chain_on_other_springs_is_missed(monkeypatch):
+    spring = chains.CubicSpring
+    changed = {"stiffness": chains.GROUND, "cubic": 1.01 * chains.CUBIC}
+    monkeypatch.setattr(chains, "CubicSpring", lambda point, **own: spring(point, **{**own, **changed}))
+    assert missed(chains.cubic_chain()) == {"first harmonic at the peak", "the same"}
 
 
 def test_a_mass_on_a_stiffer_contact_vibrates_otherwise(monkeypatch):

@@ -17,13 +17,14 @@ from .books.recording import (
     remember_probes,
 )
 from .lanes.compiled import entry, pasted
-from .lanes.operations import INTEGER, TRUTH, Runs, anywhere, choose, everywhere, hold, magnitude, placed
+from .lanes.operations import INTEGER, TRUTH, Runs, anywhere, choose, everywhere, held, hold, magnitude, placed
 from .layout import columns as at
 from .layout.contact_values import Compliance, Touch, Tried
 from .layout.parts import Parts
-from .layout.rows import CONTACTS, SINE
+from .layout.rows import SINE, first_probe
 from .modes.coupled import energy_of
 from .modes.loads import change_loads, credit_loads, differ
+from .modes.springs import credit_springs
 from .modes.turning import credit_turning, turn_bodies
 from .several import keep_many, touch_many
 from .single import keep_one, touch_one
@@ -33,9 +34,8 @@ from .trying import complete_one, gap_of
 @pasted
 def begin(parts: Parts, runs: Runs) -> None:
     """Save the initial values of the probes."""
-    first = CONTACTS + parts.sizes.rows + 2 * parts.sizes.loads
     probes = parts.probes
-    remember_probes(parts.modes.rows, first, probes.kinds, probes.spans, probes.last, runs)
+    remember_probes(parts.modes.rows, first_probe(parts.sizes), probes.kinds, probes.spans, probes.last, runs)
 
 
 @pasted
@@ -110,7 +110,9 @@ def march(single: bool | None, several: bool | None, space: bool | None, place: 
         if everywhere(ended > 0.0):
             break
         credit_loads(parts, n, runs)
-        stored = energy_of(parts.modes, sizes, runs)
+        if several is not None:
+            credit_springs(parts, n, runs)
+        stored = energy_of(parts.modes, sizes, runs) + held(parts.state.energies, at.STORED_IN_SPRINGS, runs)
         stored += stored_in_contacts(parts.contacts, parts.state.carried, sizes.contacts, runs)
         hold(parts.state.energies, at.STORED, runs, stored)
         finite = choose(ended > 0.0, zero, magnitude(stored)) < math.inf

@@ -37,6 +37,7 @@ from .layout import columns as at
 from .layout.contact_values import Free, FreeInSpace, Moved, Tangents, Touch
 from .layout.parts import Carried, Contacts, Parts, Sizes
 from .layout.rows import DISPLACEMENT, has_b
+from .modes.springs import pull_springs
 from .trying import complete_many, place_after, place_after_along_b, soften, try_many
 
 # Error of the contact forces, relative to the largest, above which the run stops.
@@ -180,10 +181,12 @@ def touch_many(space: bool | None, parts: Parts, n: int, ended: Number, runs: Ru
     """Try step `n` and solve for the forces of all contacts (steps 1 to 5); return where a run leaves, and why."""
     sizes, contacts, state = parts.sizes, parts.contacts, parts.state
     after = n + 2 if parts.imposed.motion.shape[0] > 1 else 0
+    leaves = pull_springs(parts, n, runs)
+    why = leaves * at.TOO_STIFF
     try_many(space, parts, after, ended, runs)
-    leaves, why = runs.zero, runs.zero
     if sizes.paths:
-        leaves, why = any_beyond_ends(sizes, parts.paths, contacts, state, runs)
+        beyond, because = any_beyond_ends(sizes, parts.paths, contacts, state, runs)
+        leaves, why = choose(beyond > 0.5, beyond, leaves), choose(beyond > 0.5, because, why)
     error = solve_several(space, parts, runs)
     unsolved = choose(leaves > 0.5, runs.zero, choose(error <= UNBELIEVABLE, runs.zero, 1.0))
     if anywhere(unsolved > 0.5):

@@ -126,6 +126,8 @@ def driving(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = None
         _in_order(points, system), "normal_force", "tangential_force"
     )
     flat, samples = assemble(system), normal.shape[1]
+    if flat.springs.bends:
+        raise ArgumentError("system", "have linear springs, from whose forces its motion follows", got="nonlinear ones")
     if bodies is not None:
         flat = _only(flat, [system.body_name(body) for body in bodies])
     if len(normal) != len(system.contacts):

@@ -64,7 +64,7 @@ class CudaMarch(March):
 
         super().__init__(blocks, states, step, ratio, solve)
         self.cuda, self.threads_per_block = cuda, threads_per_block
-        parts = self.modes, self.paths, self.contacts, self.turning, self.carried, self.probes
+        parts = self.modes, self.paths, self.contacts, self.turning, self.springs, self.carried, self.probes
         self.there = [self._moved(part) for part in parts]
 
     def _moved(self, part: Any) -> Any:
@@ -82,7 +82,7 @@ class CudaMarch(March):
     @property
     def states(self) -> list[State]:
         """State of each run."""
-        modes, _, _, _, carried, _ = self.there
+        modes, *_, carried, _ = self.there
         self.modes = self.modes._replace(rows=modes.rows.copy_to_host())
         self.carried = type(carried)(*(array.copy_to_host() for array in carried))
         return super().states
@@ -105,8 +105,9 @@ class CudaMarch(March):
         from .._kernels.cuda import marches
 
         imposed, filled = self._moved(imposed), self._moved(records)
-        modes, paths, contacts, turning, carried, probes = self.there
-        parts = Parts(self.layout.sizes, self.timing, modes, paths, contacts, turning, carried, imposed, probes, filled)
+        modes, paths, contacts, turning, springs, carried, probes = self.there
+        fixed = self.layout.sizes, self.timing, modes, paths, contacts, turning, springs
+        parts = Parts(*fixed, carried, imposed, probes, filled)
         grid = -(-self.runs // self.threads_per_block)
         marches[self.kind][grid, self.threads_per_block](self.runs, parts)
         for array, output in zip(filled, records, strict=True):

@@ -287,7 +287,8 @@ def _kind(arrays: Arrays, most_modes: int | None) -> Hashable | None:
         return None
     contacts = tuple((one.bending, one.axial, len(one.fixed), _waves(one), _law(one)) for one in flat.contacts)
     probes = tuple(type(probe) for probe in arrays.probes), len(flat.probes)
-    return flat.mode_count, flat.coupled, contacts, _turned(flat), len(flat.loads), probes
+    pushed = len(flat.loads), len(flat.springs.bends)
+    return flat.mode_count, flat.coupled, contacts, _turned(flat), pushed, probes
 
 
 def _turned(flat: Assembly) -> Hashable:

@@ -14,13 +14,25 @@ import numpy as np
 from .._kernels.contacts.newton import FACTORS
 from .._kernels.lanes.vectors import LANES
 from .._kernels.layout import columns as at
-from .._kernels.layout.parts import Carried, Contacts, Imposed, Modes, Parts, Paths, Probes, Records, Timing, Turning
+from .._kernels.layout.parts import (
+    Carried,
+    Contacts,
+    Imposed,
+    Modes,
+    Parts,
+    Paths,
+    Probes,
+    Records,
+    Springs,
+    Timing,
+    Turning,
+)
 from .._kernels.layout.rows import CONTACTS
 from .._kernels.march import march
 from .._kernels.modes.turning import OF_CONTACT
 from ..arrays import Array
 from ..lowering import Assembly
-from ..lowering.blocks import Blocks, ContactBlocks, ProbeBlocks
+from ..lowering.blocks import Blocks, ContactBlocks, ProbeBlocks, SpringBlocks
 from ..lowering.own_laws import of_one_width
 from ..lowering.packing import (
     PLAIN,
@@ -195,6 +207,7 @@ class March:
             columns(aligned(2 * len(first.turning), runs)),
             columns(aligned(OF_CONTACT * self.contact_count if first.turning else 0, runs)),
         )
+        self.springs = self._springs([one.springs for one in blocks])
         numbers = self.contact_count * at.CARRIED, self.contact_count * at.CARRIED, at.ENERGIES
         self.carried = Carried(*(columns(aligned(count, runs)) for count in numbers))
         self.probe_count = len(first.probes.kinds)
@@ -232,9 +245,17 @@ class March:
             columns(aligned(count * at.SUMS, runs)),
         )
 
+    def _springs(self, springs: Sequence[SpringBlocks]) -> Springs:
+        each = [one.ravel() for one in of_one_width([one.numbers for one in springs])]
+        return Springs(
+            columns(side_by_side(each)),
+            columns(aligned(len(springs[0].numbers) * at.SPRING_STATE, self.runs)),
+        )
+
     def _probes(self, probes: Sequence[ProbeBlocks]) -> Probes:
         spans = np.zeros((self.probe_count, 2), dtype=np.int64)
-        first = CONTACTS + self.layout.sizes.rows + 2 * self.layout.sizes.loads
+        sizes = self.layout.sizes
+        first = CONTACTS + sizes.rows + 2 * (sizes.loads + sizes.springs)
         for i, span in enumerate(spans):
             seen = np.flatnonzero(self.modes.rows[:, first + i].any(axis=1))
             span[:] = (seen[0], seen[-1] + 1) if seen.size else (0, 0)
@@ -254,9 +275,10 @@ class March:
 
     @property
     def is_single(self) -> bool:
-        """Whether there is a single contact in the plane, without coupled modes and turning bodies."""
+        """Whether there is one contact in the plane, without coupled modes, turning bodies and nonlinear springs."""
         sizes = self.layout.sizes
-        return sizes.contacts == 1 and not sizes.space and not sizes.coupled and not len(self.layout.turning)
+        one = sizes.contacts == 1 and not sizes.space
+        return one and not sizes.coupled and not sizes.springs and not len(self.layout.turning)
 
     @property
     def kind(self) -> tuple[bool | None, bool | None, bool | None]:
@@ -345,9 +367,9 @@ class March:
 
     def _march(self, imposed: Imposed, records: Records) -> None:
         """March through a chunk and fill `records`."""
-        parts = self.modes, self.paths, self.contacts, self.turning, self.carried, imposed, self.probes, records
+        parts = self.modes, self.paths, self.contacts, self.turning, self.springs, self.carried, imposed, self.probes
         for place in self.places:
-            march(*self.kind, place, Parts(self.layout.sizes, self.timing, *parts))
+            march(*self.kind, place, Parts(self.layout.sizes, self.timing, *parts, records))
 
 
 def compilations() -> int:

@@ -52,7 +52,7 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
     """
     modes = blocks.modes
     start = _Start(arrays, scheme, step, blocks)
-    force = start.factors @ arrays.loads
+    force = start.force
     first = start.increment(force)
     carried = start.carried(first)
     closed = np.flatnonzero(start.is_closed)
@@ -69,7 +69,9 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
         carried[pressed, at.STATUS] = np.where(start.slip_speeds[pressed] == 0.0, STICKING, SLIDING)
         carried[pressed, at.STUCK_SHARE] = carried[pressed, at.STATUS] == STICKING
     modal, energies = np.stack([arrays.position, first]), np.zeros(at.ENERGIES)
+    energies[at.STORED_IN_SPRINGS] = arrays.springs.energy(arrays.position - 0.5 * first)
     energies[at.STORED] = modes.stored_energy(modal) + stored_in_contacts(arrays, carried)
+    energies[at.STORED] += energies[at.STORED_IN_SPRINGS]
     return State(modal, np.zeros_like(modal), carried, energies)
 
 
@@ -102,7 +104,9 @@ class _Start:
         moved = arrays.motion(times[1:2], step)[0, :, at.TIP_MOTION] + self.travels[:, 0] @ arrays.position
         places = [one.at + shift for one, shift in zip(arrays.contacts, moved.tolist(), strict=True)]
         self.rows = self._rows_at(places)
-        terms = _terms(arrays, self.factors @ arrays.loads)
+        self.pull = arrays.springs.forces(arrays.position)
+        self.force = self.factors @ arrays.loads + self.pull
+        terms = _terms(arrays, self.force)
         self.gaps = np.array([_gap(*one, arrays, terms) for one in zip(arrays.contacts, self.rows, strict=True)])
         self.velocity = arrays.velocity.copy()
         for one in arrays.turning:
@@ -242,7 +246,8 @@ class _Start:
         """Do a pass of `forces`, with friction under these normal forces [N]."""
         around, beyond = self._turned(self.arrays.position)
         free = self.modes.free(self.arrays.position + around, first + self._turned(first)[0])
-        gap, slip = self._at_first_step(free + self.factors @ self.modes.loads)
+        pushed = self.factors @ self.modes.loads + self.modes.mobility(self.pull[None])[0]
+        gap, slip = self._at_first_step(free + pushed)
         gap, slip = gap + self.rows[:, 0] @ around, slip + self._slips(beyond)
         compliance = self._compliance(self.pushes(closed))
         first_rows = np.cumsum([0, *(1 + self.counts[closed])])

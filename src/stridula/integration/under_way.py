@@ -244,7 +244,12 @@ def _from(
 ) -> UnderWay:
     """Return a march that continues from a state."""
     state.energies[:] = 0.0
-    stored = blocks.modes.stored_energy(state.modal) + stored_in_contacts(arrays, state.carried)
+    state.energies[at.STORED_IN_SPRINGS] = arrays.springs.energy(state.modal[at.Q] - 0.5 * state.modal[at.D])
+    stored = (
+        state.energies[at.STORED_IN_SPRINGS]
+        + blocks.modes.stored_energy(state.modal)
+        + stored_in_contacts(arrays, state.carried)
+    )
     state.energies[at.STORED] = stored
     return UnderWay(
         marched=marched,

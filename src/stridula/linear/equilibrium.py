@@ -35,6 +35,8 @@ SAME = 1e-6
 # Largest number of iterations for the forces of contacts that hold the same motion twice, and relative change that ends
 # them.
 PASSES, SETTLED = 60, 1e-10
+# Largest number of steps of Newton's method for the stretch of nonlinear springs, and relative change that ends them.
+STRETCHES, STRETCHED = 200, 1e-12
 HELD, LIFTED_OFF, JAMMED = "held", "lifted off", "jammed"
 ONE, SEVERAL, NONE, AT_LEAST_ONE, NONE_FOUND = "one", "several", "none", "at least one", "none found"
 
@@ -95,7 +97,7 @@ def find_equilibrium(structure: Structure, velocity: Array, status: Sequence[str
     closed contacts are tried, with many sets are searched. Of several equilibria, one in which no contact jams is
     returned, and of these the one nearest to that without friction. Where the slip is neither prescribed nor given, its
     sense is that of the motion without friction. A held contact sticks where it would come to rest without friction:
-    its previous history is unknown.
+    its previous history is unknown. The structure takes the stiffness that nonlinear springs have in it.
 
     Parameters
     ----------
@@ -112,6 +114,24 @@ def find_equilibrium(structure: Structure, velocity: Array, status: Sequence[str
         If a law depends on a slip speed that is unknown, or if contacts constrain the same motion twice so that forces
         and friction remain undetermined.
     """
+    found = _found(structure, velocity, status)
+    if not structure.arrays.springs.bends:
+        return found
+    rows = structure.arrays.springs.rows
+    for _ in range(STRETCHES):
+        if not np.isfinite(found.displacement).all():
+            return found
+        structure.stretch_to(found.displacement)
+        before, found = rows @ found.displacement, _found(structure, velocity, status)
+        after = rows @ found.displacement
+        if (np.abs(after - before) <= STRETCHED * np.abs(after).max()).all():
+            return found
+    words = "nonlinear springs between whose stiffnesses the search goes to and fro"
+    raise ArgumentError("connections", "have an equilibrium", got=words)
+
+
+def _found(structure: Structure, velocity: Array, status: Sequence[str] | None) -> Equilibrium:
+    """Return the equilibrium with the present stiffness of nonlinear springs."""
     if status is not None:
         return _judged(structure, velocity, list(status), "")
     _check_moved(structure, range(len(structure.lines)))

@@ -115,11 +115,24 @@ class Structure:
         self.rigid = _rigid_motions(self)
         self.passing = self._turn(now)
         factors = arrays.signals.factors(now, 1e-6)[:, 0]
-        self.load = factors @ arrays.loads
+        self._unstretched = self.stiffness, factors @ arrays.loads
+        self.stiffness, self.load = self._unstretched
+        if arrays.springs.bends:
+            self._take(*arrays.springs.steepest())
         moved = arrays.motion(np.array([settled]), 1e-6)[0, :, 2]
         self.gaps = moved + [contact.gap for contact in system.contacts]
         if time is None:
             self._check_steady()
+
+    def stretch_to(self, displacement: Array) -> None:
+        """Take the stiffness and the force of nonlinear springs about modal displacements, shape (modes,)."""
+        self._take(*self.arrays.springs.tangents(displacement))
+
+    def _take(self, added: Array, pulls: Array) -> None:
+        """Add a stiffness and modal forces of nonlinear springs, in place of those before."""
+        stiffness, load = self._unstretched
+        self.stiffness, self.load, self._known = stiffness + added, load + pulls, {}
+        self.rigid = _rigid_motions(self)
 
     def _turn(self, now: Array) -> Array:
         """Add the turning of bodies at a given time, and return the velocities of their material.
@@ -404,7 +417,7 @@ def _rigid_motions(structure: Structure) -> Array:
         return motions
     # Only rigid motions of the bodies are considered, so that a fast mode cannot hide a soft connection.
     squared, shapes = np.linalg.eigh(structure.stiffness[np.ix_(rigid, rigid)])
-    return np.asarray(motions @ shapes[:, squared <= UNSTRAINED * squared[-1]])
+    return np.asarray(motions @ shapes[:, np.abs(squared) <= UNSTRAINED * np.abs(squared).max()])
 
 
 def _prescribed_rates(contact: PointContact, system: System, now: Array) -> tuple[float, float, float]:

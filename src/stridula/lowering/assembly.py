@@ -19,6 +19,7 @@ from .motion import Prescribed, motion_of, prescribed_of
 from .own_laws import check_law
 from .probe_rows import ProbeRows, probe_rows
 from .signals import Signal, Signals
+from .springs import SpringRows, spring_rows
 from .turning_modes import TurningModes, turning_modes
 
 
@@ -45,6 +46,8 @@ class Assembly:
         Modal forces of the drives for a unit signal.
     signals : Signals
         Factors of the loads, and the motion imposed on a root.
+    springs : SpringRows
+        Nonlinear springs.
     position, velocity : ndarray, shape (modes,)
         Modal positions and velocities at the start.
     friction_state : ndarray, shape (contacts, 2)
@@ -71,6 +74,7 @@ class Assembly:
     motion: Signal
     loads: Array
     signals: Signals
+    springs: SpringRows
     position: Array
     velocity: Array
     friction_state: Array
@@ -137,6 +141,7 @@ def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:
         motion=motion_of(system, signals.displacement),
         loads=np.array([load.modal for load in loads]).reshape(len(loads), coordinates.size),
         signals=signals,
+        springs=spring_rows(coordinates),
         position=position,
         velocity=velocity,
         friction_state=np.array([one.law.states_at_start for one in system.contacts]),

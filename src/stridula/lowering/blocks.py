@@ -17,6 +17,7 @@ from .assembly import Assembly
 from .contact_rows import ContactRows
 from .own_laws import law_of_march, of_one_width
 from .schemes import Scheme
+from .springs import SpringRows
 from .stepping import Stepping
 
 # Largest phase by which waves may turn in a step [rad].
@@ -295,6 +296,43 @@ def probe_blocks(arrays: Assembly, step: float) -> ProbeBlocks:
 
 
 @dataclass(frozen=True)
+class SpringBlocks:
+    """The nonlinear springs as arrays for the march.
+
+    Attributes
+    ----------
+    pulls : ndarray, shape (springs, modes)
+        Increments of the modes for a unit force along each.
+    stretches : ndarray, shape (springs, modes)
+        Stretch of each for a unit of the modes.
+    numbers : ndarray, shape (springs, numbers)
+        Numbers of each, with as many kinks for all.
+    """
+
+    pulls: Array
+    stretches: Array
+    numbers: Array
+
+    @property
+    def kinks(self) -> int:
+        """Number of the kinks of each."""
+        return (self.numbers.shape[1] - at.OF_SPRING) // at.OF_KINK
+
+
+def spring_blocks(springs: SpringRows, modes: Recurrence) -> SpringBlocks:
+    """Return the nonlinear springs as arrays for the march."""
+    rows, kinks = springs.rows, max((bend.place.size for bend in springs.bends), default=0)
+    numbers = np.zeros((len(rows), at.OF_SPRING + at.OF_KINK * kinks))
+    numbers[:, at.SPRING_REACH] = np.sum(rows * modes.sawtooth(rows), axis=1)
+    for own, bend in zip(numbers, springs.bends, strict=True):
+        own[: at.SPRING_REACH] = bend.constant, bend.linear, bend.cubic
+        own[at.OF_SPRING : at.OF_SPRING + at.OF_KINK * bend.place.size] = np.stack(
+            [bend.place, bend.right, bend.left], axis=1
+        ).ravel()
+    return SpringBlocks(modes.mobility(rows), rows, numbers)
+
+
+@dataclass(frozen=True)
 class Blocks:
     """A system under a time scheme as arrays for the march.
 
@@ -306,6 +344,8 @@ class Blocks:
         The contacts.
     probes : ProbeBlocks
         The probes.
+    springs : SpringBlocks
+        The nonlinear springs.
     turning : tuple of TurningBlocks
         The bodies that turn.
     """
@@ -313,6 +353,7 @@ class Blocks:
     modes: Recurrence
     contacts: ContactBlocks
     probes: ProbeBlocks
+    springs: SpringBlocks
     turning: tuple[TurningBlocks, ...] = ()
 
     @cached_property
@@ -346,4 +387,5 @@ def blocks_of(arrays: Assembly, scheme: Scheme, step: float) -> Blocks:
         )
         for one in arrays.turning
     )
-    return Blocks(modes, contact_blocks(arrays, modes), probe_blocks(arrays, step), turning)
+    probes, springs = probe_blocks(arrays, step), spring_blocks(arrays.springs, modes)
+    return Blocks(modes, contact_blocks(arrays, modes), probes, springs, turning)

@@ -105,6 +105,8 @@ def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
         or any(runs[0].turning[body].pairs.min() < modes.coupled for body in contacts.circles if body >= 0),
         bool((np.diff(contacts.first_rows) > 2).any()),
         bool((contacts.circles >= 0).any()),
+        len(runs[0].springs.pulls),
+        max(one.springs.kinks for one in runs),
     )
     along_of, across_of = np.array(places.waves, dtype=np.int64).reshape(-1, 2).T.copy()
     path_of = [-1 if along is None else places.path_spans[_key(along)][0][0] for along in contacts.paths]
@@ -297,7 +299,8 @@ def scale_of(modes: Recurrence) -> Array:
 def rows_of(blocks: Blocks, scale: Array) -> Array:
     """Return all rows over the modes of a run, those of its state, the first two, without values."""
     contacts, modes = blocks.contacts, blocks.modes
-    used = CONTACTS + len(contacts.rows) + 2 * len(modes.loads) + len(blocks.probes.rows)
+    springs = blocks.springs
+    used = CONTACTS + len(contacts.rows) + 2 * (len(modes.loads) + len(springs.pulls)) + len(blocks.probes.rows)
     # The number of vectors is odd, so that the same rows of all blocks do not share a part of the cache.
     rows = np.zeros((used + 1 - used % 2, scale.size))
     rows[2:4] = modes.block[[at.B, at.R]]
@@ -309,6 +312,8 @@ def rows_of(blocks: Blocks, scale: Array) -> Array:
         contacts.rows * scale,
         modes.loads / scale,
         modes.forces * scale,
+        springs.pulls / scale,
+        springs.stretches * scale,
         blocks.probes.rows * scale,
     )
     rows[CONTACTS:used] = np.concatenate(parts)

@@ -20,7 +20,7 @@ def fastest_vibration(arrays: Assembly, duration: float) -> float:
     All motions of lumped bodies are physical, unlike the highest modes below a cutoff: a squeal or an impact on a
     contact with a stiffness may have this frequency. Other bodies are held, except for their rigid motions. Contacts
     are closed, with the stiffness under the largest force expected within `duration` [s], and stick where they have a
-    tangential stiffness.
+    tangential stiffness. Nonlinear springs have the largest stiffness of their table, or that of their stretch.
     """
     lumped = np.flatnonzero(arrays.lumped)
     if not lumped.size:
@@ -28,11 +28,14 @@ def fastest_vibration(arrays: Assembly, duration: float) -> float:
     rows = np.array([one.fixed[0, lumped] for one in arrays.contacts if one.yields is not None])
     joints = [(one.fixed[1:, lumped], one.contact.tangential_stiffness) for one in arrays.contacts]
     joined = [(rows, stiffness) for rows, stiffness in joints if stiffness is not None]
-    if not rows.size and not joined and not arrays.coupled:
+    springs = arrays.springs
+    if not rows.size and not joined and not arrays.coupled and not springs.bends:
         return float(arrays.angular_frequency[lumped].max())
     stiffness = arrays.all_stiffness[np.ix_(lumped, lumped)]
     if rows.size:
         stiffness = stiffness + (rows.T * expected_stiffness(arrays, duration)) @ rows
+    for row, bend in zip(springs.rows, springs.bends, strict=True):
+        stiffness = stiffness + bend.steepest(float(row @ arrays.position)) * np.outer(row[lumped], row[lumped])
     for along, joint in joined:
         stiffness = stiffness + joint * along.T @ along
     return float(np.sqrt(max(np.linalg.eigvalsh(0.5 * (stiffness + stiffness.T))[-1], 0.0)))

@@ -68,5 +68,5 @@ def guided(place: Array, inwards: Array, width: float) -> list[Array]:
     return [*bars, *(place + radius * inwards + 0.35 * width * sign * side + circle for sign in (-1.0, 1.0))]
 
 
-CONNECTIONS = {"spring": spring, "dashpot": dashpot}
+CONNECTIONS = {"spring": spring, "dashpot": dashpot, "cubic spring": spring, "tabulated spring": spring}
 SUPPORTS = {"pinned": pinned, "clamped": clamped, "guided": guided}

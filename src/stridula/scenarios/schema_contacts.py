@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any, Literal
 
 from ..connections import CONNECTIONS
@@ -154,7 +155,12 @@ else:
     Surface = table_of(SurfaceContact, title="Surface", before=_faces, after=_layer)
     Contact = table_of(PointContact, title="Contact", before=_sides, after=_friction)
     _moves = {"history": (History | None, None, "factor on the offset or the velocity over time, constant if left out")}
+    _kinds = "spring, dashpot, cubic spring or tabulated spring"
+    _varies = {kind: any(field.name == "history" for field in fields(kind)) for kind in CONNECTIONS}
     Connection = one_of(
         "kind",
-        [table_of(kind, "kind", kind.kind, "spring or dashpot", before=ENDS, after=_moves) for kind in CONNECTIONS],
+        [
+            table_of(kind, "kind", kind.kind, _kinds, before=ENDS, after=_moves if varies else {})
+            for kind, varies in _varies.items()
+        ],
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from . import (
+    chains,
     clockwork,
     falling,
     frequencies,
@@ -42,6 +43,7 @@ CASES: tuple[Case, ...] = (
     *linings.CASES,
     *partial_slip.CASES,
     *joints.CASES,
+    *chains.CASES,
     *jams.CASES,
     *laws.CASES,
     *clockwork.CASES,

@@ -22,11 +22,11 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
     a, b, load = recurrence = scheme(bodies.stiffness, bodies.damping, h)
     drives = bodies.drives(h)
     q_before, q = start(contacts, bodies, scheme, h)
-    ledger, kept, guess = Ledger(bodies.stiffness, recurrence, h), [], None
+    ledger, kept, guess = Ledger(bodies.stiffness, recurrence, h, bodies.stored((q + q_before) / 2)), [], None
     for n in range(steps):
         # 1. Trial.
-        force = drives(n * h)
-        trial = a @ q - b @ q_before + load @ force
+        force, pull = drives(n * h), bodies.pulls(q)
+        trial = a @ q - b @ q_before + load @ (force + pull)
         # 2. Traces.
         for one in contacts:
             one.freeze(trial, (n + 1) * h)
@@ -42,7 +42,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         push = rows.T @ forces_of(touches)
         q_new = trial + load @ push
 
-        ledger.add(contacts, touches, (force, push), (q_before, q, q_new), n)
+        ledger.add(contacts, touches, (force, pull, push), (q_before, q, q_new), n)
         kept.append({"solutions": len(found), **books(contacts, touches, free, q_new), **vars(ledger.sums)})
         q_before, q = q, q_new
     trail = SimpleNamespace(**{name: np.array([one[name] for one in kept]) for name in kept[0]})
@@ -68,7 +68,7 @@ def start(contacts, bodies, scheme, h):
     """
     q, velocity = bodies.start()
     a, b, load = scheme(bodies.stiffness, bodies.damping, h)
-    force, still = bodies.drives(h)(0.0), np.zeros(bodies.size)
+    force, still = bodies.drives(h)(0.0) + bodies.pulls(q), np.zeros(bodies.size)
 
     def under(f, q=q, velocity=velocity):
         return before_start(scheme, bodies.stiffness, bodies.damping, h, q, velocity, f)
@@ -120,14 +120,16 @@ def books(contacts, touches, free, q):
 class Ledger:
     """Works since the start, losses, and the energy stored at the last step [J]."""
 
-    def __init__(self, stiffness, recurrence, h):
+    def __init__(self, stiffness, recurrence, h, in_springs):
+        self.in_springs = in_springs
         self.stiffness, self.b, self.h, self.inverse = stiffness, recurrence.b, h, np.linalg.inv(recurrence.load)
         self.sums = SimpleNamespace(stored=0.0, drive=0.0, contact=0.0, friction=0.0, convection=0.0, damping=0.0)
 
     def add(self, contacts, touches, forces, positions, n):
-        """Add step `n`: forces of drives and contacts on the modes, the last three positions."""
-        (force, push), (q_before, q, q_new) = forces, positions
+        """Add step `n`: forces of drives, nonlinear springs and contacts on the modes, the last three positions."""
+        (force, pull, push), (q_before, q, q_new) = forces, positions
         middle, sums = (q_new - q_before) / 2, self.sums
+        self.in_springs -= pull @ middle
         sums.drive += force @ middle
         sums.contact += push @ middle
         for one, touch in zip(contacts, touches, strict=True):
@@ -141,7 +143,7 @@ class Ledger:
             sums.convection += slope * (one.place(q_new) - one.place_before) / 2
         d, d_before = q_new - q, q - q_before
         sums.damping += middle @ self.inverse @ (d - self.b @ d_before) - self.kinetic(d) + self.kinetic(d_before)
-        sums.stored = self.kinetic(d) + q_new @ self.stiffness @ q / 2
+        sums.stored = self.kinetic(d) + q_new @ self.stiffness @ q / 2 + self.in_springs
 
     def kinetic(self, d):
         return d @ self.inverse @ (d + self.b @ d) / 4

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from scipy.integrate import simpson
 from scipy.linalg import expm
 
 import stridula as st
@@ -54,6 +55,23 @@ def before_start(scheme, stiffness, damping, h, q, v, f):
     return e @ q + by_velocity @ v + by_force @ f
 
 
+def beyond(spring):
+    """Pull of a nonlinear spring over its stretch, beyond that of its stiffness at the start."""
+    if isinstance(spring, st.CubicSpring):
+        return lambda s: spring.cubic * s**3
+    x, f = np.array(spring.displacement), np.array(spring.force)
+    # Two points far outside go on along the first and the last line.
+    far = 1e3 * np.ptp(x)
+    x = np.array([x[0] - far, *x, x[-1] + far])
+    f = np.array([f[0] - far * (f[1] - f[0]) / (x[2] - x[1]), *f, f[-1] + far * (f[-1] - f[-2]) / (x[-2] - x[-3])])
+    return lambda s: np.interp(s, x, f) - spring.rates[0] * s
+
+
+def fine(s):
+    """Places from zero to a stretch."""
+    return np.linspace(0.0, s, 20001)
+
+
 class Bodies:
     """A system in modal coordinates, body by body in the order of the system."""
 
@@ -69,13 +87,25 @@ class Bodies:
             self.stiffness[span, span] = np.diag(modes.angular_frequency**2)
             own = np.diag(2 * modes.damping * modes.angular_frequency)
             self.damping[span, span] = own if modes.damping_matrix is None else modes.damping_matrix
+        self.bent = []
         for joint in system.connections:
             axis = {"x": 0, "y": 1}[joint.direction]
             row = self.trace(joint.first)[axis] - (self.trace(joint.second)[axis] if joint.second else 0.0)
-            if isinstance(joint, st.Spring):
+            if isinstance(joint, (st.CubicSpring, st.TabulatedSpring)):
+                self.stiffness += joint.rates[0] * np.outer(row, row)
+                self.bent.append((row, beyond(joint)))
+            elif isinstance(joint, st.Spring):
                 self.stiffness += joint.stiffness * np.outer(row, row)
             else:
                 self.damping += joint.coefficient * np.outer(row, row)
+
+    def pulls(self, q):
+        """Modal forces of nonlinear springs beyond their stiffness at the start."""
+        return sum((-pull(row @ q) * row for row, pull in self.bent), np.zeros(self.size))
+
+    def stored(self, q):
+        """Energy of these forces, by Simpson's rule on short pieces."""
+        return sum(simpson([pull(s) for s in way], x=way) for row, pull in self.bent for way in [fine(row @ q)])
 
     def held(self, body):
         return any(isinstance(d, st.ImposedVelocity) and d.point.body == body for d in self.system.drives)

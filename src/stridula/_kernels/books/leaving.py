@@ -57,6 +57,6 @@ def end(parts: Parts, ended: Number, completed: Number, runs: Runs) -> None:
     for row in range(carried.shape[0]):
         kept = choose(ended > 0.0, held(parts.state.at_end, row, runs), held(carried, row, runs))
         hold(carried, row, runs, kept)
-    stored = energy_of(parts.modes, parts.sizes, runs)
+    stored = energy_of(parts.modes, parts.sizes, runs) + held(parts.state.energies, at.STORED_IN_SPRINGS, runs)
     stored += stored_in_contacts(parts.contacts, carried, parts.sizes.contacts, runs)
     hold(parts.state.energies, at.STORED, runs, stored)

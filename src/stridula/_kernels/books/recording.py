@@ -5,7 +5,7 @@ from ..lanes.compiled import inlined, pasted
 from ..lanes.operations import Array, Number, Runs, choose, held, hold, read, write
 from ..layout import columns as at
 from ..layout.parts import Parts
-from ..layout.rows import CONTACTS, D, Q, has_b
+from ..layout.rows import CONTACTS, D, Q, first_probe, has_b
 from ..modes.blocks import product
 
 
@@ -22,7 +22,7 @@ def keep_probes(space: bool | None, parts: Parts, n: int, runs: Runs) -> None:
     """Record the values of the probes at step `n`, which is complete."""
     sizes, rows, now = parts.sizes, parts.modes.rows, parts.contacts.now
     kinds, spans, direct, shares, last, passing = parts.probes
-    first, signals, of_contacts = CONTACTS + sizes.rows + 2 * sizes.loads, parts.imposed.signals, parts.contacts.rows
+    first, signals, of_contacts = first_probe(sizes), parts.imposed.signals, parts.contacts.rows
     for p in range(kinds.size):
         seen = Q if kinds[p] == at.DISPLACEMENT else D
         found = product(rows, first + p, seen, spans[p, 0], spans[p, 1], runs)

@@ -138,9 +138,20 @@ IN_STEP = 27
 ) = range(11)
 SUMS = 11
 
-# Columns of the energy record, one row a sample; all but the stored energy are carried from step to step.
-STORED, DRIVE_WORK, CONTACT_WORK, FRICTION_LOSS, CONVECTION_WORK, DAMPING_LOSS, ITERATIONS, UNSOLVED = range(8)
-ENERGIES = 8
+# Columns of the energy record, one row a sample; all but the stored energy are carried from step to step. That of
+# nonlinear springs is the work against their pull, and part of the stored energy.
+(
+    STORED,
+    DRIVE_WORK,
+    CONTACT_WORK,
+    FRICTION_LOSS,
+    CONVECTION_WORK,
+    DAMPING_LOSS,
+    ITERATIONS,
+    UNSOLVED,
+    STORED_IN_SPRINGS,
+) = range(9)
+ENERGIES = 9
 
 # Columns of the record of a contact, one row a sample: shares of the time, and the status of the most steps last.
 (
@@ -168,4 +179,12 @@ COLUMNS = 17
 DISPLACEMENT, VELOCITY, ACCELERATION = range(3)
 
 # Reasons for the end of a march.
-FINISHED, OFF_TRACK, NOT_FINITE, CONTACT_UNSOLVED, ENERGY_CREATED = range(5)
+FINISHED, OFF_TRACK, NOT_FINITE, CONTACT_UNSOLVED, ENERGY_CREATED, TOO_STIFF = range(6)
+
+# Numbers of a nonlinear spring: pull without a stretch, that for a stretch, that for its cube, and the size of its
+# sawtooth under a unit force; then a group for each kink: its place, the change of the stiffness above it and below it.
+CONSTANT_PULL, LINEAR, CUBIC, SPRING_REACH = range(4)
+OF_SPRING, OF_KINK = 4, 3
+# State of a nonlinear spring: its pull in this step, and its stretch half a step before it.
+PULL, STRETCH = range(2)
+SPRING_STATE = 2

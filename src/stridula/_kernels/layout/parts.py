@@ -20,6 +20,8 @@ class Sizes(NamedTuple):
         Number of rows of all contacts: of the normal and the tangents of each.
     loads : int
         Number of unit loads.
+    springs, kinks : int
+        Number of nonlinear springs, and of the kinks of each.
     paths, coupled_paths : bool
         Whether any contact is on a path, and on a path with coupled modes.
     space : bool
@@ -39,6 +41,8 @@ class Sizes(NamedTuple):
     coupled_paths: bool
     space: bool
     circles: bool = False
+    springs: int = 0
+    kinks: int = 0
 
 
 class Timing(NamedTuple):
@@ -169,6 +173,13 @@ class Turning(NamedTuple):
     contacts: np.ndarray
 
 
+class Springs(NamedTuple):
+    """Numbers of the nonlinear springs, and their state in a step, a column a run."""
+
+    numbers: np.ndarray
+    now: np.ndarray
+
+
 class Probes(NamedTuple):
     """Kinds and blocks of probes, shares of signals and contact forces; values at the last step, and additions of
     turning to the last change and to the next."""
@@ -199,6 +210,7 @@ class Parts(NamedTuple):
     paths: Paths
     contacts: Contacts
     turning: Turning
+    springs: Springs
     state: Carried
     imposed: Imposed
     probes: Probes

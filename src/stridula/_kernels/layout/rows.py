@@ -2,6 +2,7 @@
 
 from ..lanes.compiled import inlined
 from ..lanes.operations import Array
+from .parts import Sizes
 
 # Rows of a mode: state, share of an increment kept, stiffness of a step, loads of this step; in a march of several
 # contacts, increment and position without contact force and push of the contacts; amplitudes of its waves on a path, or
@@ -23,7 +24,7 @@ from ..lanes.operations import Array
     TANGENTIAL,
 ) = range(14)
 # From `NORMAL` on each contact has a row for its normal and one for each tangent, its displacements for a unit of the
-# mode; unit loads and probes follow.
+# mode; unit loads, pulls and stretches of nonlinear springs, and probes follow.
 CONTACTS = NORMAL
 
 # Rows of a wave: sine and cosine at the contact, alternately for the last step and for this one, and its number.
@@ -43,3 +44,15 @@ DISPLACEMENT, COMPLIANCE = range(2)
 def has_b(first_rows: Array, i: int) -> bool:
     """Return whether contact `i` has a tangent b, as those in space do: a row after those of its normal and tangent."""
     return first_rows[i + 1] - first_rows[i] > 2
+
+
+@inlined
+def first_spring(sizes: Sizes) -> int:
+    """Return the row of the unit pull of the first nonlinear spring; those of their stretches follow the pulls."""
+    return CONTACTS + sizes.rows + 2 * sizes.loads
+
+
+@inlined
+def first_probe(sizes: Sizes) -> int:
+    """Return the row of the first probe."""
+    return first_spring(sizes) + 2 * sizes.springs

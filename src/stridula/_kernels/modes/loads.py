@@ -36,10 +36,13 @@ def credit_loads(parts: Parts, n: int, runs: Runs) -> None:
 
 @pasted
 def change_loads(parts: Parts, n: int, runs: Runs) -> None:
-    """Apply the loads of step `n`, if they differ from those before."""
-    sizes = parts.sizes
-    if differ(parts.imposed.signals, n, sizes.loads, runs):
+    """Apply the loads of step `n`, if they differ from those before, or if the pulls of springs are to be added."""
+    sizes, signals = parts.sizes, parts.imposed.signals
+    changed = differ(signals, n, sizes.loads, runs)
+    if changed:
         credit_loads(parts, n, runs)
+    if changed or sizes.springs:
+        now = n if signals.shape[0] > 1 else 0
         for j in range(sizes.loads):
-            factor = read(parts.imposed.signals, n, j * runs.columns + runs.first, runs.zero)
+            factor = read(signals, now, j * runs.columns + runs.first, runs.zero)
             set_load(parts.modes.rows, j, CONTACTS + sizes.rows + j, sizes.blocks, runs, factor)

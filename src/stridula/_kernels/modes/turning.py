@@ -9,7 +9,7 @@ from ..lanes.compiled import inlined, pasted
 from ..lanes.operations import Array, Number, Pair, Runs, add, anywhere, fused, held, hold, load, magnitude, read, store
 from ..layout import columns as at
 from ..layout.parts import Parts
-from ..layout.rows import CONTACTS, INCREMENT, POSITION, PUSH, D, Q, has_b
+from ..layout.rows import CONTACTS, INCREMENT, POSITION, PUSH, D, Q, first_probe, has_b
 from .blocks import product
 
 # Rows of a block: drag and order; one minus the cosine, and the sine, of the turn of the pairs in this step and in the
@@ -141,7 +141,7 @@ def turn_loads_and_probes(parts: Parts, begin: int, end: int, runs: Runs) -> Non
     first = CONTACTS + sizes.rows + sizes.loads
     for j in range(sizes.loads):
         add(parts.modes.given, j, runs, product(rows, first + j, PUSH, begin, end, runs))
-    first += sizes.loads
+    first = first_probe(sizes)
     for p in range(probes.kinds.size):
         if probes.kinds[p] != at.DISPLACEMENT and begin < probes.spans[p, 1] and probes.spans[p, 0] < end:
             hold(probes.passing, 2 * p, runs, product(rows, first + p, POSITION, begin, end, runs))

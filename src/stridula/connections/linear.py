@@ -1,15 +1,15 @@
-"""Connections between bodies: springs and dashpots."""
+"""Linear springs and dashpots."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar
 
-from .arrays import Array
-from .bodies import BodyPoint
-from .checks import ArgumentError, brief, instance
-from .declared import Axis, Number, Position, Velocity, Way, check_declared
-from .histories import HISTORIES, Constant, History
+from ..bodies import BodyPoint
+from ..checks import instance
+from ..declared import Axis, Number, Position, Velocity, check_declared
+from ..histories import HISTORIES, Constant, History
+from .ends import along, check_ends
 
 
 @dataclass(frozen=True)
@@ -39,13 +39,15 @@ class Spring:
     first: BodyPoint
     second: BodyPoint | None = None
     kind: ClassVar[str] = "spring"
+    # A linear spring has no pull beyond its stiffness.
+    bend: ClassVar[None] = None
     stiffness: Annotated[float, Number("N/m", above=0.0)] = field(kw_only=True)
     direction: Axis = field(default="x", kw_only=True)
     offset: Position = field(default=0.0, kw_only=True)
     history: History = field(default_factory=Constant, kw_only=True)
 
     def __post_init__(self) -> None:
-        _check_ends(self.first, self.second)
+        check_ends(self.first, self.second)
         check_declared(self)
         instance("history", self.history, HISTORIES)
 
@@ -61,7 +63,7 @@ class Spring:
 
     def __str__(self) -> str:
         moved = f", offset {self.offset:.4g} m, {self.history.kind}" if self.offset else ""
-        return f"spring {self.stiffness:.4g} N/m along {_along(self)}{moved}"
+        return f"spring {self.stiffness:.4g} N/m along {along(self)}{moved}"
 
 
 @dataclass(frozen=True)
@@ -88,13 +90,14 @@ class Dashpot:
     first: BodyPoint
     second: BodyPoint | None = None
     kind: ClassVar[str] = "dashpot"
+    bend: ClassVar[None] = None
     coefficient: Annotated[float, Number("N s/m", above=0.0)] = field(kw_only=True)
     direction: Axis = field(default="x", kw_only=True)
     velocity: Velocity = field(default=0.0, kw_only=True)
     history: History = field(default_factory=Constant, kw_only=True)
 
     def __post_init__(self) -> None:
-        _check_ends(self.first, self.second)
+        check_ends(self.first, self.second)
         check_declared(self)
         instance("history", self.history, HISTORIES)
 
@@ -110,44 +113,4 @@ class Dashpot:
 
     def __str__(self) -> str:
         moved = f", velocity {self.velocity:.4g} m/s, {self.history.kind}" if self.velocity else ""
-        return f"dashpot {self.coefficient:.4g} N s/m along {_along(self)}{moved}"
-
-
-Connection = Spring | Dashpot
-CONNECTIONS = (Spring, Dashpot)
-
-
-def unit(connection: Connection) -> Array:
-    """Return the world direction of a connection, a unit vector, shape (3,)."""
-    return Way().along(connection.direction)
-
-
-def pushes(connection: Connection) -> list[tuple[History, BodyPoint, Array]]:
-    """Return the forces of a connection with an offset or a velocity: history, point, and x, y and z [N]."""
-    if not connection.moved_by:
-        return []
-    force = connection.moved_by * unit(connection)
-    return [
-        (connection.history, point, sign * force) for point, sign in zip(ends(connection), (1.0, -1.0), strict=False)
-    ]
-
-
-def _along(connection: Connection) -> str:
-    """Return the direction of a connection in words."""
-    if isinstance(connection.direction, str):
-        return connection.direction
-    return f"({', '.join(f'{one:.3g}' for one in connection.direction)})"
-
-
-def ends(connection: Connection) -> tuple[BodyPoint, ...]:
-    """Return the points that a connection joins, without the ground."""
-    return (connection.first,) if connection.second is None else (connection.first, connection.second)
-
-
-def _check_ends(first: BodyPoint, second: BodyPoint | None) -> None:
-    instance("first", first, BodyPoint)
-    if second is not None:
-        instance("second", second, BodyPoint)
-        if second == first:
-            words = "be a point other than first (equal bodies need names)"
-            raise ArgumentError("second", words, second, got=f"{brief(second)} for both")
+        return f"dashpot {self.coefficient:.4g} N s/m along {along(self)}{moved}"

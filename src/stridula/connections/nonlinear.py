@@ -1,0 +1,242 @@
+"""Springs whose force is not proportional to their stretch."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+from typing import Annotated, ClassVar
+
+import numpy as np
+
+from ..arrays import Array
+from ..bodies import BodyPoint
+from ..checks import ArgumentError
+from ..declared import Axis, Each, Number, check_declared
+from ..histories import Constant, History
+from .ends import along, check_ends
+
+
+@dataclass(frozen=True)
+class Bend:
+    """The pull of a spring over its stretch s beyond that of its linear part.
+
+    It is ``constant + linear s + cubic s³ + sum of right max(s - place, 0) + left min(s - place, 0)``.
+
+    Attributes
+    ----------
+    constant : float
+        Pull without a stretch [N].
+    linear : float
+        Stiffness without a stretch [N/m], where it is below zero: a linear spring has none.
+    cubic : float
+        Pull for the cube of a stretch [N/m³].
+    place : ndarray, shape (kinks,)
+        Stretches at which the stiffness changes, rising [m].
+    right, left : ndarray, shape (kinks,)
+        Change of the stiffness above each, and below it [N/m].
+    """
+
+    constant: float
+    linear: float
+    cubic: float
+    place: Array
+    right: Array
+    left: Array
+
+    def pull(self, stretch: float) -> float:
+        """Return the pull at a stretch [N]."""
+        above, below = self._from_kinks(stretch)
+        smooth = self.constant + self.linear * stretch + self.cubic * stretch**3
+        return float(smooth + self.right @ above + self.left @ below)
+
+    def stiffness(self, stretch: float) -> float:
+        """Return the change of the pull with the stretch [N/m]."""
+        above, below = self._from_kinks(stretch)
+        kinked = self.right @ (above > 0.0) + self.left @ (below < 0.0)
+        return float(self.linear + 3.0 * self.cubic * stretch**2 + kinked)
+
+    def energy(self, stretch: float) -> float:
+        """Return the energy that the pull stores [J]."""
+        above, below = self._from_kinks(stretch)
+        kinked = 0.5 * (self.right @ above**2 + self.left @ below**2)
+        smooth = self.constant * stretch + 0.5 * self.linear * stretch**2 + 0.25 * self.cubic * stretch**4
+        return float(smooth + kinked)
+
+    def steepest(self, stretch: float) -> float:
+        """Return the largest stiffness [N/m] of a table at any stretch, or of a cubic up to a stretch [m]."""
+        if not self.place.size:
+            return max(self.stiffness(stretch), 0.0)
+        ends = self.place[0] - 1.0, self.place[-1] + 1.0
+        return max(self.stiffness(one) for one in (*ends, *(self.place[1:] + self.place[:-1]) / 2.0))
+
+    def _from_kinks(self, stretch: float) -> tuple[Array, Array]:
+        """Return the stretch above each kink, and below it."""
+        return np.maximum(stretch - self.place, 0.0), np.minimum(stretch - self.place, 0.0)
+
+
+@dataclass(frozen=True)
+class NonlinearSpring:
+    """A massless spring whose force is not proportional to its stretch.
+
+    Attributes
+    ----------
+    first : BodyPoint
+        One end.
+    second : BodyPoint or None
+        The other end, or the ground.
+    direction : str or tuple of float
+        World direction along which it acts.
+    """
+
+    first: BodyPoint
+    second: BodyPoint | None = None
+    kind: ClassVar[str]
+    direction: Axis = field(default="x", kw_only=True)
+    # A force that does not depend on time has no history.
+    moved_by: ClassVar[float] = 0.0
+    history: ClassVar[History] = Constant()
+
+    def __post_init__(self) -> None:
+        check_ends(self.first, self.second)
+        check_declared(self)
+
+    @property
+    def stiffness_at_rest(self) -> float:
+        """Stiffness at the start [N/m]."""
+        raise NotImplementedError
+
+    @property
+    def bend(self) -> Bend:
+        """Its pull beyond that of its linear part."""
+        raise NotImplementedError
+
+    @property
+    def rates(self) -> tuple[float, float]:
+        """Force of its linear part per unit of relative displacement [N/m] and of relative velocity [N s/m]."""
+        return max(self.stiffness_at_rest, 0.0), 0.0
+
+
+@dataclass(frozen=True)
+class CubicSpring(NonlinearSpring):
+    """A massless spring with a cubic law, between two points, or between a point and the ground.
+
+    Its force pulls the first end back with ``stiffness s + cubic s³``, where s is the displacement of the first end
+    relative to the other along the direction. It hardens where `cubic` is above zero, and softens where it is below.
+
+    Parameters
+    ----------
+    first : BodyPoint
+        One end.
+    second : BodyPoint, optional
+        The other end, of the same or another body; the ground if left out.
+    stiffness : float
+        Stiffness without a stretch [N/m].
+    cubic : float
+        Force for the cube of the stretch [N/m3].
+    direction : {"x", "y", "z"} or sequence of float, optional
+        World direction along which it acts: x, y, z, or its three components, of any length.
+
+    Examples
+    --------
+    >>> mass = st.PointMass(1.0)
+    >>> st.CubicSpring(mass.centre, stiffness=8766.2, cubic=4.6752e7).pull(0.01)
+    134.414
+    """
+
+    kind: ClassVar[str] = "cubic spring"
+    stiffness: Annotated[float, Number("N/m")] = field(kw_only=True)
+    cubic: Annotated[float, Number("N/m3")] = field(kw_only=True)
+
+    @property
+    def stiffness_at_rest(self) -> float:
+        """Stiffness at the start [N/m]."""
+        return self.stiffness
+
+    @property
+    def bend(self) -> Bend:
+        """Its pull beyond that of its linear part."""
+        nothing = np.zeros(0)
+        return Bend(0.0, min(self.stiffness, 0.0), self.cubic, nothing, nothing, nothing)
+
+    def pull(self, stretch: float) -> float:
+        """Return the force that pulls the first end back at a stretch [m], in N."""
+        return self.stiffness * stretch + self.cubic * stretch**3
+
+    def __str__(self) -> str:
+        return f"cubic spring {self.stiffness:.4g} N/m, {self.cubic:.4g} N/m3 along {along(self)}"
+
+
+@dataclass(frozen=True)
+class TabulatedSpring(NonlinearSpring):
+    """A massless spring given by a table, such as a bump stop, a play or a bilinear spring.
+
+    Its force pulls the first end back; it lies on straight lines between the displacements of the table, and beyond
+    them on those through the last two. The displacement is that of the first end relative to the other along the
+    direction. A table with a force without a displacement is preloaded.
+
+    Parameters
+    ----------
+    first : BodyPoint
+        One end.
+    second : BodyPoint, optional
+        The other end, of the same or another body; the ground if left out.
+    displacement : sequence of float
+        Displacements of the table [m], rising, two or more.
+    force : sequence of float
+        Force at each [N].
+    direction : {"x", "y", "z"} or sequence of float, optional
+        World direction along which it acts: x, y, z, or its three components, of any length.
+
+    Examples
+    --------
+    A mount with a play of 1 mm to either side, then 50 N/mm:
+
+    >>> mass = st.PointMass(1.0)
+    >>> play = st.TabulatedSpring(mass.centre, displacement=[-2e-3, -1e-3, 1e-3, 2e-3], force=[-50.0, 0.0, 0.0, 50.0])
+    >>> play.pull(3e-3)
+    100.0
+    """
+
+    kind: ClassVar[str] = "tabulated spring"
+    displacement: Annotated[Sequence[float], Each(Number("m"))] = field(kw_only=True)
+    force: Annotated[Sequence[float], Each(Number("N"))] = field(kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if len(self.displacement) < 2:
+            raise ArgumentError("displacement", "have two values or more", got=str(len(self.displacement)))
+        for number, (before, after) in enumerate(pairwise(self.displacement), start=1):
+            if after <= before:
+                raise ArgumentError(f"displacement[{number}]", f"be above {before!r}, the one before it", after)
+        if len(self.force) != len(self.displacement):
+            words = f"have as many values as displacement, {len(self.displacement)}"
+            raise ArgumentError("force", words, got=str(len(self.force)))
+
+    @cached_property
+    def _slopes(self) -> Array:
+        """Stiffness on each straight line [N/m]."""
+        return np.asarray(np.diff(self.force) / np.diff(self.displacement))
+
+    @property
+    def stiffness_at_rest(self) -> float:
+        """Stiffness at the start [N/m]; at a kink, that above it."""
+        return float(self._slopes[int(np.searchsorted(self.displacement[1:-1], 0.0, side="right"))])
+
+    @cached_property
+    def bend(self) -> Bend:
+        """Its pull beyond that of its linear part."""
+        place, change = np.array(self.displacement[1:-1]), np.diff(self._slopes)
+        above = place > 0.0
+        linear = min(self.stiffness_at_rest, 0.0)
+        return Bend(self.pull(0.0), linear, 0.0, place, np.where(above, change, 0.0), np.where(above, 0.0, -change))
+
+    def pull(self, stretch: float) -> float:
+        """Return the force that pulls the first end back at a stretch [m], in N."""
+        line = int(np.searchsorted(self.displacement[1:-1], stretch, side="right"))
+        return float(self.force[line] + self._slopes[line] * (stretch - self.displacement[line]))
+
+    def __str__(self) -> str:
+        least, most = f"{self.displacement[0]:.4g}", f"{self.displacement[-1]:.4g}"
+        return f"spring by a table from {least} to {most} m along {along(self)}"
