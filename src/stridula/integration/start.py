@@ -103,7 +103,9 @@ class _Start:
         places = [one.at + shift for one, shift in zip(arrays.contacts, moved.tolist(), strict=True)]
         self.rows = self._rows_at(places)
         terms = _terms(arrays, self.factors @ arrays.loads)
-        self.gaps = np.array([_gap(*one, arrays, terms) for one in zip(arrays.contacts, self.rows, strict=True)])
+        self.materials = np.array([one.at for one in arrays.contacts]) + self.rows[:, 1] @ arrays.position
+        given = zip(arrays.contacts, self.rows, self._heights(self.materials).tolist(), strict=True)
+        self.gaps = np.array([_gap(*one, arrays, terms) for one in given])
         self.velocity = arrays.velocity.copy()
         for one in arrays.turning:
             # Increments are relative to the pairs as they are carried round.
@@ -122,6 +124,10 @@ class _Start:
     def _rows_at(self, places: list[float]) -> Array:
         """Return the rows of all contacts with the tips at abscissas [m], (contacts, 1 + tangents, modes)."""
         return self._padded([one.rows_at(place) for one, place in zip(self.arrays.contacts, places, strict=True)])
+
+    def _heights(self, places: Array) -> Array:
+        """Return the heights of the tracks at places along their material [m]."""
+        return np.array([one.height_at(place) for one, place in zip(self.arrays.contacts, places, strict=True)])
 
     def _slips(self, values: Array) -> Array:
         """Return the displacements along the tangents for modal displacements, (contacts, tangents)."""
@@ -207,7 +213,11 @@ class _Start:
             states = self.arrays.friction_state[i]
             carried[i, FRICTION_STATE] = states if one.contact.has_state_vector else (states[0], 0.0)
         carried[:, ANCHOR], carried[:, at.LAST_GAP] = carried[:, MATERIAL], self.gaps
-        carried[:, at.EARLIER_GAP] = self.gaps - self.rows[:, 0] @ first - self.before[:, at.GAP_MOTION]
+        passed = self._slips(first)[:, 0] + self.before[:, at.TIP_MOTION] - self.before[:, at.TRACK_MOTION]
+        carried[:, at.LAST_HEIGHT] = self._heights(self.materials)
+        carried[:, at.EARLIER_HEIGHT] = self._heights(self.materials - passed)
+        risen = carried[:, at.LAST_HEIGHT] - carried[:, at.EARLIER_HEIGHT]
+        carried[:, at.EARLIER_GAP] = self.gaps - self.rows[:, 0] @ first - self.before[:, at.GAP_MOTION] + risen
         # Two steps earlier, with the same acceleration.
         speeds = self.gap_speeds
         carried[:, at.EARLIEST_GAP] = 4.0 * carried[:, at.EARLIER_GAP] - 3.0 * self.gaps + 2.0 * self.step * speeds
@@ -298,7 +308,8 @@ class _Start:
     def gap_speeds(self) -> Array:
         """Velocity of the gap of each contact at the start [m/s]."""
         imposed = (self.before + self.after)[:, at.GAP_MOTION] * 0.5 / self.step
-        return np.asarray(self.rows[:, 0] @ self.arrays.velocity + imposed)
+        steep = [one.slope_at(place) for one, place in zip(self.arrays.contacts, self.materials, strict=True)]
+        return np.asarray(self.rows[:, 0] @ self.arrays.velocity + imposed - steep * self.speeds[:, 0])
 
     @cached_property
     def pressing(self) -> Array:
@@ -345,6 +356,7 @@ class _Start:
         gaps = self.gaps + self.rows[:, 0] @ increments + travelled[:, 0] + self.after[:, at.GAP_MOTION]
         some = slice(self.tangents)
         slips = self._slips(increments) + travelled[:, 1:] + self.after[:, TIP[some]] - self.after[:, TRACK[some]]
+        gaps -= self._heights(self.materials + slips[:, 0]) - self._heights(self.materials)
         return gaps, slips
 
     def _compliance(self, pushes: Array) -> Array:
@@ -370,15 +382,15 @@ def _terms(arrays: Assembly, force: Array) -> Array:
     return np.hypot(arrays.position, deflected)
 
 
-def _gap(one: ContactRows, rows: Array, arrays: Assembly, terms: Array) -> float:
-    """Return the gap of a contact at the start, exactly zero if it is closed.
+def _gap(one: ContactRows, rows: Array, height: float, arrays: Assembly, terms: Array) -> float:
+    """Return the gap of a contact over a height of its track at the start, exactly zero if it is closed.
 
     A displacement has the rounding error of the largest term of its body, in any direction of the contact.
     """
-    gap = float(one.gap + rows[0] @ arrays.position)
+    gap = float(one.gap - height + rows[0] @ arrays.position)
     spans = [slice(*span) for span in arrays.spans.values()] if terms.any() else []
     felt = sum(float(np.linalg.norm(rows[0, span]) * np.linalg.norm(terms[span])) for span in spans)
-    scale = one.gap + felt
+    scale = one.gap + abs(height) + felt
     if one.contact.yields is not None:
         return gap if abs(gap) > ROUND_OFF * scale else 0.0
     if gap < -ROUND_OFF * scale:

@@ -192,6 +192,8 @@ class ContactBlocks:
         Path of each contact.
     circles : ndarray of int, shape (contacts,)
         The turning body that each contact moves round, -1 for none.
+    profiles : ndarray, shape (contacts, numbers)
+        Profile of its track; no numbers without any.
     """
 
     constants: Array
@@ -202,6 +204,7 @@ class ContactBlocks:
     compliance: Array
     paths: tuple[PathModes | None, ...]
     circles: Array
+    profiles: Array
 
 
 def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
@@ -238,7 +241,8 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
             circles[i] = next(k for k, body in enumerate(arrays.turning) if body.span == one.circle.span)
             constant[first_rows[i] : first_rows[i + 1], slice(*one.circle.span)] = 0.0
     compliance = np.ascontiguousarray(constant @ modes.mobility(constant).T)
-    return ContactBlocks(constants, codes, laws, rows, first_rows, compliance, paths, circles)
+    profiles = np.array(of_one_width([_profile_of_march(one) for one in arrays.contacts]))
+    return ContactBlocks(constants, codes, laws, rows, first_rows, compliance, paths, circles, profiles)
 
 
 def _reach(arrays: Assembly, modes: Recurrence) -> Array:
@@ -249,6 +253,14 @@ def _reach(arrays: Assembly, modes: Recurrence) -> Array:
         rows = np.array([arrays.contacts[i].rows_at(arrays.contacts[i].at)[0] for i in soft])
         reach[soft] = np.abs(rows @ modes.sawtooth(rows).T).sum(axis=1)
     return reach
+
+
+def _profile_of_march(one: ContactRows) -> Array:
+    """Return the numbers of the profile of a contact's track, none without one."""
+    if one.profile is None:
+        return np.zeros(0)
+    pieces = one.profile.pieces
+    return np.concatenate([[len(pieces), one.profile.periodic], one.profile.place, pieces.ravel()])
 
 
 def _path_modes(one: ContactRows) -> PathModes | None:

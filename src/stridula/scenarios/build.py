@@ -32,7 +32,7 @@ from ..bodies.drawn_surfaces import drawn_of
 from ..bodies.sections import SECTIONS
 from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, listed, suggestion
-from ..contact import LAWS, STIFFNESSES, PointContact, RigidTrack, SurfaceContact
+from ..contact import LAWS, STIFFNESSES, PointContact, Profile, RigidTrack, SurfaceContact
 from ..disk import is_there
 from ..drives import Drive
 from ..integration import GaussSeidel
@@ -347,6 +347,9 @@ class Builder:
         for name in ("history", "normal_history"):
             if table.get(name) is not None:
                 table[name] = self._history((*path, name), table[name])
+        if table.get("profile") is not None:
+            with self._within(*path, "profile"):
+                table["profile"] = Profile(**table["profile"])
         with self._within(*path):
             return RigidTrack(**{name: value for name, value in table.items() if value is not None})
 

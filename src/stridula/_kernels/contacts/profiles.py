@@ -1,0 +1,54 @@
+"""Height of the surface of a track under a tip, and the work of a normal force that follows it."""
+
+from ..contact.lanewise import lanewise
+from ..lanes.compiled import inlined
+from ..lanes.operations import Array, Number, Runs, add, held, hold
+from ..layout import columns as at
+from ..layout.contact_values import Profile
+from ..layout.parts import Carried, Contacts
+from ..layout.profiles import FIRST_PLACE, ORDER, PERIODIC, PIECES
+
+
+@lanewise(0.0)
+def height_at(place: Number, profile: Profile) -> Number:
+    """Return the height of a surface at a place along its material; beyond the ends that of the end."""
+    table, row = profile.table, profile.row
+    pieces = int(table[row, PIECES])
+    if pieces == 0:
+        return 0.0
+    first, last = table[row, FIRST_PLACE], table[row, FIRST_PLACE + pieces]
+    if table[row, PERIODIC] > 0.0:
+        place = first + (place - first) % (last - first)
+    place = min(max(place, first), last)
+    low, high = 0, pieces
+    while high - low > 1:
+        middle = (low + high) // 2
+        if table[row, FIRST_PLACE + middle] <= place:
+            low = middle
+        else:
+            high = middle
+    along = place - table[row, FIRST_PLACE + low]
+    begin = FIRST_PLACE + pieces + 1 + low * ORDER
+    height = table[row, begin + ORDER - 1]
+    for k in range(ORDER - 2, -1, -1):
+        height = height * along + table[row, begin + k]
+    return height
+
+
+@inlined
+def set_height(i: int, slip: Number, contacts: Contacts, carried: Array, runs: Runs) -> Number:
+    """Set and return the height of the track under contact `i` at the end of the step, after a slip (step 3)."""
+    place = held(carried, i * at.CARRIED + at.MATERIAL, runs) + slip
+    height = height_at(place, Profile(contacts.profiles, i * runs.columns + runs.first))
+    hold(contacts.now, i * at.IN_STEP + at.HEIGHT, runs, height)
+    return height
+
+
+@inlined
+def follow_profile(i: int, normal: Number, contacts: Contacts, state: Carried, runs: Runs) -> None:
+    """Carry the height of the track under contact `i`; credit the work of the normal force as it advances."""
+    base, height = i * at.CARRIED, held(contacts.now, i * at.IN_STEP + at.HEIGHT, runs)
+    rise = 0.5 * (height - held(state.carried, base + at.EARLIER_HEIGHT, runs))
+    add(state.energies, at.CONVECTION_WORK, runs, normal * rise)
+    hold(state.carried, base + at.EARLIER_HEIGHT, runs, held(state.carried, base + at.LAST_HEIGHT, runs))
+    hold(state.carried, base + at.LAST_HEIGHT, runs, height)
