@@ -209,7 +209,9 @@ def keep_many(space: bool | None, parts: Parts, n: int, runs: Runs) -> None:
         else:
             keep_books_of(i, parts, n, runs)
         if contacts.profiles.shape[1]:
-            follow_profile(i, held(contacts.now, i * at.IN_STEP + at.NORMAL_NOW, runs), contacts, state, runs)
+            normal = held(contacts.now, i * at.IN_STEP + at.NORMAL_NOW, runs)
+            slip = held(contacts.now, i * at.IN_STEP + at.NEW_SLIP, runs)
+            follow_profile(i, normal, slip, contacts, state, runs)
         place, slope = place_after(i, parts, after, runs)
         goes_round = parts.sizes.circles and parts.paths.body_of[i] >= 0
         if space is not None and goes_round:

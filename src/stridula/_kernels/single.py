@@ -72,7 +72,7 @@ def keep_one(parts: Parts, n: int, tried: Tried, touch: Touch, runs: Runs) -> Nu
     place = tried.place + w.nt * normal - held(contacts.fixed, 2, runs) * tangential
     keep_books(0, free_of(tried, carried, runs), touch, Moved(gap, slip), parts, n, runs)
     if contacts.profiles.shape[1]:
-        follow_profile(0, normal, contacts, parts.state, runs)
+        follow_profile(0, normal, slip, contacts, parts.state, runs)
     hold(contacts.now, at.NORMAL_NOW, runs, normal)
     hold(contacts.now, at.TANGENTIAL_NOW, runs, tangential)
     return keep_place(0, carried, place, runs)

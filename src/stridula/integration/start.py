@@ -61,6 +61,7 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
         first = start.increment(force + start.along_rows(closed, forces) @ start.pushes(closed))
         first += start.increment_of_rates(closed, forces)
         carried = start.carried(first)
+        carried[:, at.PUSHED] = start.pushed(closed, forces)
         carried[closed[:, None], [at.LAST_NORMAL, *LAST_TANGENTIAL[: start.tangents]]] = forces
         presses = forces[:, 0] > 0.0
         pressed = closed[presses]
@@ -233,6 +234,10 @@ class _Start:
     def pushes(self, closed: Array) -> Array:
         """Return the rows of closed contacts, those of the normal and the tangents of one after the other."""
         return np.concatenate([self.rows[i, : 1 + self.counts[i]] for i in closed])
+
+    def pushed(self, closed: Array, forces: Array) -> Array:
+        """Return the slip of each contact along the first tangent in a step by the forces of closed contacts [m]."""
+        return np.asarray(self.rows[:, 1] @ self.modes.mobility(self.along_rows(closed, forces) @ self.pushes(closed)))
 
     def forces(self, closed: Array, first: Array, carried: Array, solve: GaussSeidel) -> Array:
         """Return the normal and the tangential forces of closed contacts, shape (closed, 1 + tangents).

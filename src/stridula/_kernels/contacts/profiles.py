@@ -37,18 +37,25 @@ def height_at(place: Number, profile: Profile) -> Number:
 
 @inlined
 def set_height(i: int, slip: Number, contacts: Contacts, carried: Array, runs: Runs) -> Number:
-    """Set and return the height of the track under contact `i` at the end of the step, after a slip (step 3)."""
-    place = held(carried, i * at.CARRIED + at.MATERIAL, runs) + slip
+    """Set and return the height of the track under contact `i` at the end of the step (step 3).
+
+    `slip` is that without contact forces; these are expected to add as much as in the last step.
+    """
+    base, here = i * at.CARRIED, i * at.IN_STEP
+    place = held(carried, base + at.MATERIAL, runs) + slip + held(carried, base + at.PUSHED, runs)
     height = height_at(place, Profile(contacts.profiles, i * runs.columns + runs.first))
-    hold(contacts.now, i * at.IN_STEP + at.HEIGHT, runs, height)
+    hold(contacts.now, here + at.HEIGHT, runs, height)
+    hold(contacts.now, here + at.TRIED_SLIP, runs, slip)
     return height
 
 
 @inlined
-def follow_profile(i: int, normal: Number, contacts: Contacts, state: Carried, runs: Runs) -> None:
-    """Carry the height of the track under contact `i`; credit the work of the normal force as it advances."""
-    base, height = i * at.CARRIED, held(contacts.now, i * at.IN_STEP + at.HEIGHT, runs)
-    rise = 0.5 * (height - held(state.carried, base + at.EARLIER_HEIGHT, runs))
+def follow_profile(i: int, normal: Number, slip: Number, contacts: Contacts, state: Carried, runs: Runs) -> None:
+    """Carry what contact `i` has of a profile to the next step; credit the work of the normal force as it advances."""
+    base, here, carried = i * at.CARRIED, i * at.IN_STEP, state.carried
+    height = held(contacts.now, here + at.HEIGHT, runs)
+    rise = 0.5 * (height - held(carried, base + at.EARLIER_HEIGHT, runs))
     add(state.energies, at.CONVECTION_WORK, runs, normal * rise)
-    hold(state.carried, base + at.EARLIER_HEIGHT, runs, held(state.carried, base + at.LAST_HEIGHT, runs))
-    hold(state.carried, base + at.LAST_HEIGHT, runs, height)
+    hold(carried, base + at.EARLIER_HEIGHT, runs, held(carried, base + at.LAST_HEIGHT, runs))
+    hold(carried, base + at.LAST_HEIGHT, runs, height)
+    hold(carried, base + at.PUSHED, runs, slip - held(contacts.now, here + at.TRIED_SLIP, runs))
