@@ -51,7 +51,7 @@ class PointContact:
     friction : FrictionLaw, optional
         Friction law, such as `Coulomb` or `Stribeck`; no friction if left out.
     gap : float, optional
-        Distance between tip and track at the start [m]; on a track with a profile, from its plane of height 0.
+        Distance between tip and track at the start [m].
     inclination : float, optional
         Angle from world x to the track's tangent, counter-clockwise [rad]; the normal, from the track to the tip, is
         the tangent turned by 90 degrees counter-clockwise. Zero on a beam or a plate.

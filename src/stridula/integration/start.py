@@ -392,7 +392,7 @@ def _gap(one: ContactRows, rows: Array, height: float, arrays: Assembly, terms: 
 
     A displacement has the rounding error of the largest term of its body, in any direction of the contact.
     """
-    gap = float(one.gap - height + rows[0] @ arrays.position)
+    gap = float(one.height - height + rows[0] @ arrays.position)
     spans = [slice(*span) for span in arrays.spans.values()] if terms.any() else []
     felt = sum(float(np.linalg.norm(rows[0, span]) * np.linalg.norm(terms[span])) for span in spans)
     scale = one.gap + abs(height) + felt

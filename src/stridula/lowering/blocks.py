@@ -217,7 +217,7 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
     first_rows = np.cumsum([0, *(len(contact.fixed) for contact in arrays.contacts)])
     paths = tuple(_path_modes(one) for one in arrays.contacts)
     for i, (one, along) in enumerate(zip(arrays.contacts, paths, strict=True)):
-        constants[i, [at.START, at.GAP]] = one.at, one.gap
+        constants[i, [at.START, at.GAP]] = one.at, one.height
         if along is not None:
             path = along.path
             angles = np.stack([path.rate, path.phase], axis=1).ravel()

@@ -115,7 +115,12 @@ class ContactRows:
     def gap_at(self, position: Array) -> float:
         """Return the gap at the start [m], at modal positions and over the profile of its track."""
         rows = self.rows_at(self.at)
-        return float(self.gap + rows[0] @ position) - self.height_at(float(self.at + rows[1] @ position))
+        return float(self.height + rows[0] @ position) - self.height_at(float(self.at + rows[1] @ position))
+
+    @property
+    def height(self) -> float:
+        """Height of the tip over the plane of its track at the start, without displacements [m]."""
+        return self.gap + self.height_at(self.at)
 
     @property
     def gap(self) -> float:

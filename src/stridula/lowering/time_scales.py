@@ -80,7 +80,7 @@ def expected_stiffness(arrays: Assembly, duration: float) -> Array:
         mobility = float(row @ row)
         pull = -(row @ arrays.loads.T) @ factors.reshape(len(arrays.loads), -1) if len(arrays.loads) else np.zeros(1)
         pressing = max(float(pull.max()), 0.0)
-        gap = float(one.gap + one.fixed[0] @ arrays.position) - one.height_at(one.at)
+        gap = float(one.gap + one.fixed[0] @ arrays.position)
         rising = 0.0 if one.profile is None else one.profile.steepest * passing[number]
         speed = max(rising - float(one.fixed[0] @ arrays.velocity + lifts[:, number].min()), 0.0)
         energy = 0.5 * speed**2 + pressing * max(gap, 0.0)

@@ -212,8 +212,7 @@ def _perturbed(system: System, share: float) -> System:
     if share == 0.0:
         return system
     first, *others = system.contacts
-    has_profile = first.rigid_track is not None and first.rigid_track.profile is not None
-    if first.gap > 0.0 and system.initial_equilibrium is None and not has_profile:
+    if first.gap > 0.0 and system.initial_equilibrium is None:
         moved = replace(first, gap=first.gap * (1.0 + share))
         return replace(system, contact=(moved, *others) if others else moved)
     return replace(system, drives=(*system.drives, _push(system, share * _prescribed(system))))
