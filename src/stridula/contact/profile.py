@@ -66,7 +66,9 @@ class Profile:
         if self.periodic:
             first, last = self.height[0], self.height[-1]
             if abs(last - first) > ROUND_OFF * float(np.ptp(self.height)):
-                raise ArgumentError("height[-1]", f"be {first!r}, the first one, a period later", last)
+                raise ArgumentError(
+                    f"height[{len(self.height) - 1}]", f"be {first!r}, the first one, a period later", last
+                )
             object.__setattr__(self, "height", (*self.height[:-1], first))
 
     @classmethod

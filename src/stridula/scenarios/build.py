@@ -348,10 +348,14 @@ class Builder:
             if table.get(name) is not None:
                 table[name] = self._history((*path, name), table[name])
         if table.get("profile") is not None:
-            with self._within(*path, "profile"):
-                table["profile"] = Profile(**table["profile"])
+            table["profile"] = self._profile((*path, "profile"), table["profile"])
         with self._within(*path):
             return RigidTrack(**{name: value for name, value in table.items() if value is not None})
+
+    def _profile(self, path: Place, table: Tables) -> Any:
+        with self._within(*path):
+            return Profile(**table)
+        return None
 
     def _circle(self, path: Place, table: Tables) -> Any:
         body = self.bodies[table["body"]]
