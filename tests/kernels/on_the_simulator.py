@@ -105,9 +105,13 @@ def on_three_feet() -> list[st.System]:
 
 
 def on_rough_belts() -> list[st.System]:
-    """Masses on belts of profiles of unlike lengths, or without one."""
+    """Masses on belts with profiles of unlike lengths."""
     found = []
-    for profile in (st.Profile.random(1e-6, 1e-4, 2e-3), st.Profile.sine(1e-6, 1e-3), None):
+    for profile in (
+        st.Profile.random(1e-6, 1e-4, 2e-3),
+        st.Profile.sine(1e-6, 1e-3),
+        st.Profile([-1e-3, 0.0], [0.0, 1e-6]),
+    ):
         mass = st.PointMass(0.1)
         belt = st.RigidTrack(velocity=2.0, profile=profile)
         contact = st.PointContact(mass.centre, belt, friction=st.Coulomb(0.4), stiffness=1e7)
@@ -189,6 +193,9 @@ FLOORS = {
             at.LAST_GAP,
             at.EARLIER_GAP,
             at.EARLIEST_GAP,
+            at.LAST_HEIGHT,
+            at.EARLIER_HEIGHT,
+            at.PUSHED,
             at.MATERIAL_B,
             at.ANCHOR_B,
             at.ABSCISSA_B,

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from kernels.systems import SYSTEMS
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
 import stridula as st
+from physics.into_space import IntoSpace
 
 MASS, LOAD = 0.2, 20.0
 AMPLITUDE, WAVELENGTH = 5e-6, 0.02
@@ -148,6 +151,35 @@ def test_lift_off_and_flight_against_scipy():
     # A lift-off within a step leaves a velocity that is wrong by at most half its jerk times the square of the step.
     slack = 0.5 * AMPLITUDE * angular**3 * h**2 * (time[inside] - leaves + h)
     assert np.all(np.abs(run.contact_height.values[inside] - expected) < slack)
+
+
+# Other systems.
+
+
+@pytest.mark.parametrize("name", ["mass on a rough belt", "mass thrown over a dip"])
+def test_profiles_in_space_are_those_of_the_plane(name):
+    """The height varies along the first tangent, whatever the direction of the plane."""
+    make, step = SYSTEMS[name]
+    flat, settings = make(), {"step": step, "sample_rate": 1 / step, "probes": []}
+    expected = st.simulate(flat, 0.05, **settings)
+    turned = IntoSpace(Rotation.from_rotvec([0.3, -1.1, 0.7]).as_matrix())
+    run = turned.simulate(flat, 0.05, **settings)
+    assert float(expected.convection_work[-1]) != 0.0
+    for name in ("contact_height", "normal_force", "contact_position", "convection_work"):
+        scale = float(np.abs(expected[name]).max())
+        np.testing.assert_allclose(run[name], expected[name], rtol=0, atol=1e-6 * scale)
+
+
+def test_a_slow_tip_follows_a_dip_between_springs():
+    """Pressed by springs alone, slowly over a dip: the force follows the depth."""
+    mass = st.PointMass(MASS)
+    dip = st.Profile(np.linspace(0.01, 0.03, 5), [0.0, -1e-5, -2e-5, -1e-5, 0.0])
+    contact = st.PointContact(mass.centre, st.RigidTrack(velocity=-0.1, profile=dip))
+    joints = [st.Spring(mass.centre, stiffness=1e5), st.Spring(mass.centre, stiffness=1e5, direction="y")]
+    run = checked(st.simulate(st.System(contact, [st.Force(mass.centre, y=-LOAD)], joints), 0.4, probes=[]))
+    depth = dip.height_at(0.1 * run.time.values)
+    np.testing.assert_allclose(run.contact_height, depth, atol=1e-9)
+    np.testing.assert_allclose(run.normal_force, LOAD + 1e5 * depth, atol=1e-2)
 
 
 # Random profiles, with friction.

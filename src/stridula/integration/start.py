@@ -61,7 +61,8 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
         first = start.increment(force + start.along_rows(closed, forces) @ start.pushes(closed))
         first += start.increment_of_rates(closed, forces)
         carried = start.carried(first)
-        carried[:, at.PUSHED] = start.pushed(closed, forces)
+        if blocks.contacts.profiles.size:
+            carried[:, at.PUSHED] = start.pushed(closed, forces)
         carried[closed[:, None], [at.LAST_NORMAL, *LAST_TANGENTIAL[: start.tangents]]] = forces
         presses = forces[:, 0] > 0.0
         pressed = closed[presses]
