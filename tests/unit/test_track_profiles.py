@@ -117,6 +117,14 @@ def test_wrong_arguments_are_refused_in_one_line(make, message):
         make()
 
 
+def test_texts_of_profiles_and_of_their_systems_are_short():
+    assert repr(DIP) == "Profile(place=(0.0, 0.001, 0.002, 0.003, 0.004), height=(0.0, 0.0, -2e-05, 0.0, 0.0))"
+    wave = st.Profile.sine(5e-6, 0.02)
+    assert repr(wave) == "Profile(257 points from 0 to 0.02 m, heights from -5e-06 to 5e-06 m, periodic=True)"
+    assert "on a rigid track with a profile at 0 m, friction 0.3" in repr(on_belt(wave))
+    assert "a rigid track with a profile" in on_belt(wave)._repr_html_()
+
+
 def test_a_file_is_read_with_its_units_in_any_order(tmp_path):
     path = tmp_path / "rail.csv"
     path.write_text("# measured\nplace;height\n20;0\n0;0\n5;3\n10;0\n15;-3\n")

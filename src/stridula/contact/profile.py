@@ -20,6 +20,8 @@ from .columns import read_columns
 POINTS_OF_SINE = 256
 # Points over a correlation length, and fewest points, of random heights.
 POINTS_OF_LENGTH, FEWEST = 8, 16
+# Largest number of points in its text.
+FEW = 8
 # Difference of the heights at both ends of a period, relative to the range, that is due to rounding.
 ROUND_OFF = 1e-9
 
@@ -70,6 +72,15 @@ class Profile:
                     f"height[{len(self.height) - 1}]", f"be {first!r}, the first one, a period later", last
                 )
             object.__setattr__(self, "height", (*self.height[:-1], first))
+
+    def __repr__(self) -> str:
+        repeats = ", periodic=True" if self.periodic else ""
+        if len(self.place) <= FEW:
+            return f"Profile(place={self.place!r}, height={self.height!r}{repeats})"
+        heights = f"heights from {min(self.height):.3g} to {max(self.height):.3g} m"
+        return (
+            f"Profile({len(self.place)} points from {self.place[0]:.4g} to {self.place[-1]:.4g} m, {heights}{repeats})"
+        )
 
     @classmethod
     def read(

@@ -63,6 +63,11 @@ class RigidTrack:
             instance("profile", self.profile, Profile)
 
     @property
+    def words(self) -> str:
+        """The track in a few words."""
+        return "a rigid track" if self.profile is None else "a rigid track with a profile"
+
+    @property
     def is_still(self) -> bool:
         """Whether it does not move."""
         moving = self.velocity or self.normal_velocity or self.lateral_velocity

@@ -1,7 +1,7 @@
 """Height of the surface of a track under a tip, and the work of a normal force that follows it."""
 
 from ..contact.lanewise import lanewise
-from ..lanes.compiled import inlined
+from ..lanes.compiled import called
 from ..lanes.operations import Array, Number, Runs, add, held, hold
 from ..layout import columns as at
 from ..layout.contact_values import Profile
@@ -35,7 +35,7 @@ def height_at(place: Number, profile: Profile) -> Number:
     return height
 
 
-@inlined
+@called
 def set_height(i: int, slip: Number, contacts: Contacts, carried: Array, runs: Runs) -> Number:
     """Set and return the height of the track under contact `i` at the end of the step (step 3).
 
@@ -49,7 +49,7 @@ def set_height(i: int, slip: Number, contacts: Contacts, carried: Array, runs: R
     return height
 
 
-@inlined
+@called
 def follow_profile(i: int, normal: Number, slip: Number, contacts: Contacts, state: Carried, runs: Runs) -> None:
     """Carry what contact `i` has of a profile to the next step; credit the work of the normal force as it advances."""
     base, here, carried = i * at.CARRIED, i * at.IN_STEP, state.carried
