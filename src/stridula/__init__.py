@@ -50,6 +50,7 @@ _HOME = {
         "LuGre",
         "PointContact",
         "PowerStiffness",
+        "Profile",
         "RateAndState",
         "RigidTrack",
         "StaticKinetic",

@@ -83,6 +83,7 @@ from .contact import LinearWeakening as LinearWeakening
 from .contact import LuGre as LuGre
 from .contact import PointContact as PointContact
 from .contact import PowerStiffness as PowerStiffness
+from .contact import Profile as Profile
 from .contact import RateAndState as RateAndState
 from .contact import RigidTrack as RigidTrack
 from .contact import StaticKinetic as StaticKinetic

@@ -281,7 +281,7 @@ def _contact_line(name: str, contact: PointContact, *others: PointContact) -> st
         gaps = [one.gap if abs(one.gap) > CLOSED else 0.0 for one in (contact, *others)]
         ends = dict.fromkeys(f"{gap:.3g}" for gap in (min(gaps), max(gaps)))
         return f"{name:<8} {counted(len(gaps), 'point')}, gap {' to '.join(ends)} m, friction {contact.law}"
-    kind = " on a rigid track" if contact.rigid_track else " against a point"
+    kind = f" on {contact.rigid_track.words}" if contact.rigid_track else " against a point"
     if contact.circle is not None:
         kind = f" of a circle of {contact.circle.length:.4g} m"
     if contact.path_body is not None:

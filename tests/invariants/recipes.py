@@ -16,12 +16,13 @@ from physics.cases import STEEL, STRIP
 import stridula as st
 
 BEAM_LENGTH = 0.8
+WAVELENGTH, WAVE_PHASE = 3e-3, 0.7
 KINDS = ["coulomb", "static", "stribeck", "exponential", "linear", "tabulated", "lugre", "aging", "slip"]
 
 
 @dataclass(frozen=True)
 class Foot:
-    """One contact: its law and its rigid track; lengths in m, velocities in m/s."""
+    """One contact: its law and its rigid track, whose surface has waves; lengths in m, velocities in m/s."""
 
     law: object
     gap: float
@@ -29,6 +30,7 @@ class Foot:
     belt: float
     lift: float
     frequency: float
+    wave: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -97,6 +99,7 @@ def recipes(draw, kinds=("chain", "block", "slider"), law=None, closed=False):
             belt=draw(some.sampled_from((0.0, 0.03, -0.2))),
             lift=0.0 if closed else draw(some.sampled_from((0.0, 0.02))),
             frequency=draw(number(30.0, 200.0)),
+            wave=0.0 if closed else draw(some.sampled_from((0.0, 2e-6))),
         )
         for _ in range(count)
     )
@@ -160,8 +163,14 @@ def converted(law, units: Units):
 
 def rigid(foot: Foot, units: Units) -> st.RigidTrack:
     shaking = st.Harmonic(foot.frequency / units.time)
+    phase = WAVE_PHASE if units.sense > 0.0 else pi - WAVE_PHASE
+    wave = st.Profile.sine(foot.wave * units.length, WAVELENGTH * units.length, phase) if foot.wave else None
     return st.RigidTrack(
-        units.sense * foot.belt * units.velocity, foot.lift * units.velocity, normal_history=shaking, name="track"
+        units.sense * foot.belt * units.velocity,
+        foot.lift * units.velocity,
+        normal_history=shaking,
+        name="track",
+        profile=wave,
     )
 
 

@@ -104,6 +104,21 @@ def on_three_feet() -> list[st.System]:
     return found
 
 
+def on_rough_belts() -> list[st.System]:
+    """Masses on belts with profiles of unlike lengths."""
+    found = []
+    for profile in (
+        st.Profile.random(1e-6, 1e-4, 2e-3),
+        st.Profile.sine(1e-6, 1e-3),
+        st.Profile([-1e-3, 0.0], [0.0, 1e-6]),
+    ):
+        mass = st.PointMass(0.1)
+        belt = st.RigidTrack(velocity=2.0, profile=profile)
+        contact = st.PointContact(mass.centre, belt, friction=st.Coulomb(0.4), stiffness=1e7)
+        found.append(st.System(contact, [st.Force(mass.centre, y=-30.0)]))
+    return found
+
+
 CASES = {
     "coulomb on a beam": coulomb_on_a_beam,
     "shaken force": shaken_force,
@@ -111,6 +126,7 @@ CASES = {
     "lugre on a belt": lambda: on_a_belt(st.LuGre(0.6, 0.4, 0.01, stiffness=1e5, damping=10.0)),
     "lugre in space": on_a_table,
     "off the track": off_the_track,
+    "rough belts": on_rough_belts,
     "round a disc": round_a_disc,
     "on three feet": on_three_feet,
 }
@@ -177,6 +193,9 @@ FLOORS = {
             at.LAST_GAP,
             at.EARLIER_GAP,
             at.EARLIEST_GAP,
+            at.LAST_HEIGHT,
+            at.EARLIER_HEIGHT,
+            at.PUSHED,
             at.MATERIAL_B,
             at.ANCHOR_B,
             at.ABSCISSA_B,

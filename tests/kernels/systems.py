@@ -248,6 +248,11 @@ def block_on_a_plane() -> st.System:
     return st.System(contact, [st.Force(block.at("top"), y=-10.0)])
 
 
+ROUGH = st.RigidTrack(velocity=0.02, profile=st.Profile.random(1e-6, 3e-4, 0.01, seed=1), name="rough belt")
+DIP = [0.0, 0.0, -2e-5, -3e-5, -1e-5, 0.0, 0.0]
+DIPPED = st.RigidTrack(profile=st.Profile(np.linspace(1e-3, 7e-3, 7), DIP), name="floor with a dip")
+WAVES = st.RigidTrack(0.1, 0.01, st.Ramp(0.02), profile=st.Profile.sine(2e-5, 6e-3, 1.0), name="corrugated belt")
+
 # Name -> function that makes the system, and the step [s].
 SYSTEMS = {
     "mass on a belt, static and kinetic": (lambda: oscillator(st.StaticKinetic(0.6, 0.4)), 2e-4),
@@ -265,6 +270,15 @@ SYSTEMS = {
     "chain of nonlinear springs": (bent_chain, 2e-4),
     "beam with a stop": (stop_of_a_beam, 5e-6),
     "pad on a shaken belt": (lambda: pad_on(SHAKEN, [st.Coulomb(0.4), WEAK, st.StaticKinetic(0.5, 0.3)]), 1e-4),
+    "mass on a rough belt": (lambda: oscillator(st.StaticKinetic(0.6, 0.4), ROUGH), 2e-4),
+    "mass thrown over a dip": (
+        lambda: pad_on(DIPPED, [st.Coulomb(0.2)], drives=[lambda block: st.InitialVelocity(block, x=0.3)]),
+        1e-4,
+    ),
+    "pad on a corrugated belt": (
+        lambda: pad_on(WAVES, [st.Coulomb(0.4), WEAK, st.StaticKinetic(0.5, 0.3)], 2e-3),
+        1e-4,
+    ),
     "pad on a beam": (
         lambda: pad_on(
             track(cutoff=8e3), [st.Coulomb(0.6)] * 2, 0.3, 1e-8, [lambda block: st.InitialVelocity(block, x=0.2)]

@@ -75,6 +75,10 @@ def slightly(change, system):
         contacts[0] = replace(contacts[0], friction=replace(law, velocity=law.velocity * (1 + 1e-4)))
     elif change == "velocity of the belt":
         contacts[0] = replace(contacts[0], track=replace(contacts[0].track, velocity=0.02 * (1 + 1e-5)))
+    elif change == "height of the surface":
+        profile = contacts[0].track.profile
+        higher = replace(profile, height=(1 + 1e-3) * np.array(profile.height))
+        contacts[0] = replace(contacts[0], track=replace(contacts[0].track, profile=higher))
     elif change == "inclination":
         contacts[0] = replace(contacts[0], inclination=contacts[0].inclination * (1 + 1e-5))
     elif change == "direction of the line":
@@ -101,6 +105,8 @@ def slightly(change, system):
         ("effect of age", "mass on a belt, aging"),
         ("velocity of weakening", "chain on a belt"),
         ("velocity of the belt", "mass on a belt, static and kinetic"),
+        ("height of the surface", "mass on a rough belt"),
+        ("height of the surface", "mass thrown over a dip"),
         ("inclination", "inclined plane"),
         ("inclination", "groove"),
         ("dashpot left out", "beam on a spring"),

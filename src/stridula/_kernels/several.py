@@ -30,6 +30,7 @@ from .contact.tangents import along, held_along, hold_along
 from .contact.yielding import about_indentation, comes_close
 from .contacts.circles import convected
 from .contacts.displacements import own_compliance
+from .contacts.profiles import follow_profile
 from .contacts.sweeps import solve_closed
 from .lanes.compiled import inlined, pasted
 from .lanes.operations import Number, Pair, Runs, add, anywhere, choose, component, held, hold
@@ -210,6 +211,10 @@ def keep_many(space: bool | None, parts: Parts, n: int, runs: Runs) -> None:
             hold(state.carried, i * at.CARRIED + at.ABSCISSA_B, runs, place_b)
         else:
             keep_books_of(i, parts, n, runs)
+        if contacts.profiles.shape[1]:
+            normal = held(contacts.now, i * at.IN_STEP + at.NORMAL_NOW, runs)
+            slip = held(contacts.now, i * at.IN_STEP + at.NEW_SLIP, runs)
+            follow_profile(i, normal, slip, contacts, state, runs)
         place, slope = place_after(i, parts, after, runs)
         goes_round = parts.sizes.circles and parts.paths.body_of[i] >= 0
         if space is not None and goes_round:

@@ -5,6 +5,7 @@ from .books.leaving import beyond_ends
 from .books.recording import keep_probes
 from .contact.solves import carried_by, strayed_in_plane
 from .contact.yielding import comes_close, solve_and_keep
+from .contacts.profiles import follow_profile
 from .lanes.compiled import inlined, pasted
 from .lanes.operations import Array, Number, Runs, anywhere, choose, held, hold
 from .layout import columns as at
@@ -70,6 +71,8 @@ def keep_one(parts: Parts, n: int, tried: Tried, touch: Touch, runs: Runs) -> Nu
     gap, slip = tried.gap + w.nn * normal - w.nt * tangential, tried.slip + w.tn * normal - w.tt * tangential
     place = tried.place + w.nt * normal - held(contacts.fixed, 2, runs) * tangential
     keep_books(0, free_of(tried, carried, runs), touch, Moved(gap, slip), parts, n, runs)
+    if contacts.profiles.shape[1]:
+        follow_profile(0, normal, slip, contacts, parts.state, runs)
     hold(contacts.now, at.NORMAL_NOW, runs, normal)
     hold(contacts.now, at.TANGENTIAL_NOW, runs, tangential)
     return keep_place(0, carried, place, runs)

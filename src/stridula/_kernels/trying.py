@@ -2,6 +2,7 @@
 
 from .contacts.circles import go_round
 from .contacts.compliance import set_compliance, set_compliance_of_coupled
+from .contacts.profiles import set_height
 from .lanes.compiled import inlined, pasted
 from .lanes.operations import TRUTH, Array, Number, Pair, Runs, anywhere, choose, fused, held, hold, read, total
 from .layout import columns as at
@@ -102,6 +103,8 @@ def try_one(parts: Parts, n: int, touch: Touch, pending: bool, sine: int, runs: 
                 slip -= total(trace, runs.zero)
                 w_tt += total(softness, runs.zero)
                 slope -= tangential * total(slopes, runs.zero)
+    if contacts.profiles.shape[1]:
+        gap -= set_height(0, slip, contacts, parts.state.carried, runs)
     w_nt = held(contacts.fixed, 1, runs)
     tried = Tried(place, gap, slip, Compliance(w_nn, w_nt, w_nt, w_tt))
     return tried, Done(0.5 * total(works, runs.zero), 0.25 * total(losses, runs.zero), slope)
@@ -166,6 +169,8 @@ def try_many(space: bool | None, parts: Parts, n: int, ended: Number, runs: Runs
             gap += rise
             slip = slips.a
             hold(now, i * at.IN_STEP + at.FREE_SLIP_B, runs, slips.b)
+        if contacts.profiles.shape[1]:
+            gap -= set_height(i, slip, contacts, state.carried, runs)
         put_free(i, now, place, choose(ended > 0.0, runs.zero, gap), slip, runs)
 
 

@@ -270,7 +270,7 @@ def _times(flat: Assembly, alone: Array, coupled: Array, values: Array) -> Array
 
 def _from_rest(flat: Assembly, normal: Array, tangential: Array, steps: int) -> tuple[Array, Array]:
     """Return forces with the first impulse of contacts that are closed at the start counted by half, as in the run."""
-    gaps = np.array([one.rows_at(one.at)[0] @ flat.position + one.gap for one in flat.contacts])
+    gaps = np.array([one.gap_at(flat.position) for one in flat.contacts])
     closed = (gaps < 0.0) | (np.array([one.yields is None for one in flat.contacts]) & (gaps == 0.0))
     share = np.where(closed, BEFORE / steps, 0.0)
     normal, tangential = normal.copy(), tangential.copy()

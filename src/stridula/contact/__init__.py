@@ -6,6 +6,7 @@ from .friction_law import FrictionLaw
 from .laws import LAWS
 from .lugre import LuGre
 from .point_contact import PointContact
+from .profile import Profile
 from .rate_and_state import RateAndState
 from .rigid_track import RigidTrack
 from .stiffness import STIFFNESSES, ContactStiffness, HertzStiffness, LinearStiffness, PowerStiffness
@@ -28,6 +29,7 @@ __all__ = [
     "LuGre",
     "PointContact",
     "PowerStiffness",
+    "Profile",
     "RateAndState",
     "RigidTrack",
     "StaticKinetic",

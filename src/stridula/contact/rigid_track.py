@@ -1,4 +1,4 @@
-"""A rigid track: floor, wall, belt, disc or shaken plane."""
+"""A rigid track: floor, wall, belt, disc or shaken plane, flat or with a profile."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from ..arrays import Array
 from ..checks import instance
 from ..declared import Acceleration, Velocity, check_declared
 from ..histories import HISTORIES, Constant, Harmonic, History, Ramp, Sampled
+from .profile import Profile
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,8 @@ class RigidTrack:
         Acceleration along its tangent [m/s²].
     normal_acceleration : float, optional
         Acceleration along its normal, towards the tip [m/s²], as of shaken ground.
+    profile : Profile, optional
+        Height of its surface over the place along its tangent, in its material; flat if left out.
     """
 
     kind: ClassVar[str] = "rigid"
@@ -49,12 +52,20 @@ class RigidTrack:
     lateral_velocity: Velocity = 0.0
     acceleration: Acceleration = 0.0
     normal_acceleration: Acceleration = 0.0
+    profile: Profile | None = None
 
     def __post_init__(self) -> None:
         check_declared(self)
         instance("history", self.history, HISTORIES)
         instance("normal_history", self.normal_history, HISTORIES)
         instance("name", self.name, str)
+        if self.profile is not None:
+            instance("profile", self.profile, Profile)
+
+    @property
+    def words(self) -> str:
+        """The track in a few words."""
+        return "a rigid track" if self.profile is None else "a rigid track with a profile"
 
     @property
     def is_still(self) -> bool:

@@ -109,6 +109,8 @@ class SurfaceContact:
             raise ArgumentError("overlay", "be False for a ReducedBody", self.overlay)
         choice("face", self.face, self.body.face_names or ("none",))
         instance("track", self.track, (AxisymmetricBody, SolidBody, RigidTrack))
+        if self.track.kind == RigidTrack.kind and self.track.profile is not None:
+            raise ArgumentError("track.profile", "be left out under a face, whose points have no places along it")
         instance("overlay", self.overlay, bool)
         if self.track.kind == SolidBody.kind:
             choice("track_face", self.track_face, self.track.face_names or ("none",))

@@ -25,6 +25,7 @@ from ..integration.settings import Settings
 from ..integration.simulate import simulate
 from ..integration.start import state_at_start
 from ..integration.state_vectors import StateVectors
+from ..linear.structure import check_flat
 from ..lowering import Assembly, assemble
 from ..lowering.blocks import blocks_of
 from ..lowering.signals import later
@@ -147,6 +148,7 @@ def beginning_of(system: System, asked: Asked) -> Beginning:
     start, settings, frequency, settle = asked.start, asked.settings, asked.frequency, asked.settle
     if start is not None and not isinstance(start, xr.Dataset):
         system = _started(system, start)
+    check_flat(system, "in searches for cycles")
     flat = assemble(system)
     _check(system, flat)
     driven, settled = drive_period(flat), settled_at(flat)

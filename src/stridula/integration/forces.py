@@ -116,6 +116,7 @@ def solved(
         *room_to_solve(sizes, per_block),
         columns(side_by_side([now.ravel()])),
         columns(aligned(count * at.SUMS, 1)),
+        np.zeros((count, 0)),
     )
     timing, touching = Timing(1, step, solve.tolerance, solve.sweeps), 1.0
     carried = columns(side_by_side([carried.ravel()]))

@@ -243,6 +243,7 @@ class March:
             *room_to_solve(sizes, width),
             columns(aligned(count * at.IN_STEP, runs)),
             columns(aligned(count * at.SUMS, runs)),
+            np.concatenate(np.stack(of_one_width([one.profiles for one in contacts]), axis=1)),
         )
 
     def _springs(self, springs: Sequence[SpringBlocks]) -> Springs:

@@ -229,7 +229,7 @@ def _without_motion(contact: dict[str, Any]) -> dict[str, Any]:
     track = contact["track"]
     if track["kind"] != "rigid":
         return contact
-    return {**contact, "track": {name: track[name] for name in ("kind", "name") if name in track}}
+    return {**contact, "track": {name: track[name] for name in ("kind", "name", "profile") if name in track}}
 
 
 def _check_frozen(before: Any, now: Any, path: str = "") -> None:

@@ -16,6 +16,7 @@ from ..linear.free_motions import free_words
 from ..lowering import Assembly
 from ..lowering.blocks import blocks_of
 from ..lowering.model_ends import notes_of
+from ..lowering.passages import notes_of_passage
 from ..records import Probe
 from ..records.dataset import RECORDED, over_time, to_dataset
 from ..records.plain import PlainRecord
@@ -119,6 +120,7 @@ class Run:
             self.arrays, self.offset = moved_on(start, system, arrays, self.blocks.modes, self.state, timing.step)
             self.first_step, self.initial_energy = int(start.attrs["last_step"]), float(start.attrs["initial_energy"])
             before = np.array(start["state_raw"].values, dtype=float)
+        self.places = self.state.carried[:, at.MATERIAL].copy()
         # Rounding errors of large energies remain when these are gone.
         met = 0.0 if start is None else float(start.attrs.get("largest_energy", 0.0))
         self.belief = Belief(system, arrays, self.blocks, self.state.energies, self.initial_energy, met)
@@ -232,7 +234,9 @@ class Run:
         pressed = self.contact_record[at.NORMAL_FORCE, :, : self.done]
         if pressed.size and not pressed.any():
             return ["no contact pressed at any time"]
-        return self._notes_of_speeds(pressed) if "slip_velocity" in self.wanted else []
+        if "slip_velocity" not in self.wanted:
+            return []
+        return [*self._notes_of_speeds(pressed), *self._notes_of_profiles()]
 
     def _notes_of_speeds(self, pressed: Array) -> list[str]:
         """Return a note on what slid farthest beyond the speeds of its measured friction, faces as a whole."""
@@ -252,6 +256,18 @@ class Run:
             f"{names[farthest]} slid at up to {speeds[farthest]:.3g} m/s, but its friction was measured up to "
             f"{measured[farthest]:.3g} m/s and is taken as constant beyond"
         ]
+
+    def _notes_of_profiles(self) -> list[str]:
+        """Return notes on tips that passed the waves of a profile in few steps, or left it."""
+        numbers = list(range(len(self.arrays.contacts)) if self.surfaces is None else self.surfaces.shown)
+        names = self.system.contact_names if self.surfaces is None else self.surfaces.names
+        slips = self.contact_record[at.SLIP_VELOCITY, :, : self.done]
+        found: list[str] = []
+        for name, number, own in zip(names, numbers, slips, strict=False):
+            profile = self.arrays.contacts[number].profile
+            if profile is not None:
+                found += notes_of_passage(name, profile, self.places[number], own, self.timing.step, self._time())
+        return found
 
     @property
     def _last_step(self) -> int:

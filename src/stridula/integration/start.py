@@ -61,6 +61,8 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
         first = start.increment(force + start.along_rows(closed, forces) @ start.pushes(closed))
         first += start.increment_of_rates(closed, forces)
         carried = start.carried(first)
+        if blocks.contacts.profiles.size:
+            carried[:, at.PUSHED] = start.pushed(closed, forces)
         carried[closed[:, None], [at.LAST_NORMAL, *LAST_TANGENTIAL[: start.tangents]]] = forces
         presses = forces[:, 0] > 0.0
         pressed = closed[presses]
@@ -107,7 +109,9 @@ class _Start:
         self.pull = arrays.springs.forces(arrays.position)
         self.force = self.factors @ arrays.loads + self.pull
         terms = _terms(arrays, self.force)
-        self.gaps = np.array([_gap(*one, arrays, terms) for one in zip(arrays.contacts, self.rows, strict=True)])
+        self.materials = np.array([one.at for one in arrays.contacts]) + self.rows[:, 1] @ arrays.position
+        given = zip(arrays.contacts, self.rows, self._heights(self.materials).tolist(), strict=True)
+        self.gaps = np.array([_gap(*one, arrays, terms) for one in given])
         self.velocity = arrays.velocity.copy()
         for one in arrays.turning:
             # Increments are relative to the pairs as they are carried round.
@@ -126,6 +130,10 @@ class _Start:
     def _rows_at(self, places: list[float]) -> Array:
         """Return the rows of all contacts with the tips at abscissas [m], (contacts, 1 + tangents, modes)."""
         return self._padded([one.rows_at(place) for one, place in zip(self.arrays.contacts, places, strict=True)])
+
+    def _heights(self, places: Array) -> Array:
+        """Return the heights of the tracks at places along their material [m]."""
+        return np.array([one.height_at(place) for one, place in zip(self.arrays.contacts, places, strict=True)])
 
     def _slips(self, values: Array) -> Array:
         """Return the displacements along the tangents for modal displacements, (contacts, tangents)."""
@@ -211,7 +219,11 @@ class _Start:
             states = self.arrays.friction_state[i]
             carried[i, FRICTION_STATE] = states if one.contact.has_state_vector else (states[0], 0.0)
         carried[:, ANCHOR], carried[:, at.LAST_GAP] = carried[:, MATERIAL], self.gaps
-        carried[:, at.EARLIER_GAP] = self.gaps - self.rows[:, 0] @ first - self.before[:, at.GAP_MOTION]
+        passed = self._slips(first)[:, 0] + self.before[:, at.TIP_MOTION] - self.before[:, at.TRACK_MOTION]
+        carried[:, at.LAST_HEIGHT] = self._heights(self.materials)
+        carried[:, at.EARLIER_HEIGHT] = self._heights(self.materials - passed)
+        risen = carried[:, at.LAST_HEIGHT] - carried[:, at.EARLIER_HEIGHT]
+        carried[:, at.EARLIER_GAP] = self.gaps - self.rows[:, 0] @ first - self.before[:, at.GAP_MOTION] + risen
         # Two steps earlier, with the same acceleration.
         speeds = self.gap_speeds
         carried[:, at.EARLIEST_GAP] = 4.0 * carried[:, at.EARLIER_GAP] - 3.0 * self.gaps + 2.0 * self.step * speeds
@@ -227,6 +239,10 @@ class _Start:
     def pushes(self, closed: Array) -> Array:
         """Return the rows of closed contacts, those of the normal and the tangents of one after the other."""
         return np.concatenate([self.rows[i, : 1 + self.counts[i]] for i in closed])
+
+    def pushed(self, closed: Array, forces: Array) -> Array:
+        """Return the slip of each contact along the first tangent in a step by the forces of closed contacts [m]."""
+        return np.asarray(self.rows[:, 1] @ self.modes.mobility(self.along_rows(closed, forces) @ self.pushes(closed)))
 
     def forces(self, closed: Array, first: Array, carried: Array, solve: GaussSeidel) -> Array:
         """Return the normal and the tangential forces of closed contacts, shape (closed, 1 + tangents).
@@ -303,7 +319,8 @@ class _Start:
     def gap_speeds(self) -> Array:
         """Velocity of the gap of each contact at the start [m/s]."""
         imposed = (self.before + self.after)[:, at.GAP_MOTION] * 0.5 / self.step
-        return np.asarray(self.rows[:, 0] @ self.arrays.velocity + imposed)
+        steep = [one.slope_at(place) for one, place in zip(self.arrays.contacts, self.materials, strict=True)]
+        return np.asarray(self.rows[:, 0] @ self.arrays.velocity + imposed - steep * self.speeds[:, 0])
 
     @cached_property
     def pressing(self) -> Array:
@@ -350,6 +367,7 @@ class _Start:
         gaps = self.gaps + self.rows[:, 0] @ increments + travelled[:, 0] + self.after[:, at.GAP_MOTION]
         some = slice(self.tangents)
         slips = self._slips(increments) + travelled[:, 1:] + self.after[:, TIP[some]] - self.after[:, TRACK[some]]
+        gaps -= self._heights(self.materials + slips[:, 0]) - self._heights(self.materials)
         return gaps, slips
 
     def _compliance(self, pushes: Array) -> Array:
@@ -375,15 +393,15 @@ def _terms(arrays: Assembly, force: Array) -> Array:
     return np.hypot(arrays.position, deflected)
 
 
-def _gap(one: ContactRows, rows: Array, arrays: Assembly, terms: Array) -> float:
-    """Return the gap of a contact at the start, exactly zero if it is closed.
+def _gap(one: ContactRows, rows: Array, height: float, arrays: Assembly, terms: Array) -> float:
+    """Return the gap of a contact over a height of its track at the start, exactly zero if it is closed.
 
     A displacement has the rounding error of the largest term of its body, in any direction of the contact.
     """
-    gap = float(one.gap + rows[0] @ arrays.position)
+    gap = float(one.height - height + rows[0] @ arrays.position)
     spans = [slice(*span) for span in arrays.spans.values()] if terms.any() else []
     felt = sum(float(np.linalg.norm(rows[0, span]) * np.linalg.norm(terms[span])) for span in spans)
-    scale = one.gap + felt
+    scale = one.gap + abs(height) + felt
     if one.contact.yields is not None:
         return gap if abs(gap) > ROUND_OFF * scale else 0.0
     if gap < -ROUND_OFF * scale:

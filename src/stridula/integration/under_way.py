@@ -166,6 +166,9 @@ def changed(before: UnderWay, marched: Marched) -> UnderWay | None:
     if not all(one.is_steady for one in marched.described.turning):
         # A turning velocity with a history would start from its beginning.
         return None
+    if any(one.profile is not None for one in marched.described.contacts):
+        # The place along a profile would start from its beginning.
+        return None
     return change.with_other_modes(position, velocity)
 
 

@@ -100,6 +100,7 @@ class Structure:
 
     def __init__(self, system: System, time: float | None = None) -> None:
         _check_circles(system)
+        check_flat(system, "in linear theory and in equilibrium")
         self.system, self.arrays = system, assemble(system)
         self._known: dict[Any, Any] = {}
         settled = settled_time(system) if time is None else time
@@ -375,6 +376,14 @@ def _check_circles(system: System) -> None:
                 f"not be carried along its circle by {name} in linear theory: let the body turn the other way instead"
             )
             raise ArgumentError("track", words, got=f"a velocity of {contact.circle.velocity!r} m/s")
+
+
+def check_flat(system: System, where: str) -> None:
+    """Raise if a track has a profile, over which no sliding is steady."""
+    for name, contact in zip(system.contact_names, system.contacts, strict=True):
+        if contact.rigid_track is not None and contact.rigid_track.profile is not None:
+            got = f"a profile under {name}, over which no sliding is steady"
+            raise ArgumentError("track.profile", f"be left out {where}", got=got)
 
 
 def _aside(one: ContactRows, shift: float) -> tuple[Array, Array]:

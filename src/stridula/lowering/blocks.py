@@ -193,6 +193,8 @@ class ContactBlocks:
         Path of each contact.
     circles : ndarray of int, shape (contacts,)
         The turning body that each contact moves round, -1 for none.
+    profiles : ndarray, shape (contacts, numbers)
+        Profile of its track; no numbers without any.
     """
 
     constants: Array
@@ -203,6 +205,7 @@ class ContactBlocks:
     compliance: Array
     paths: tuple[PathModes | None, ...]
     circles: Array
+    profiles: Array
 
 
 def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
@@ -215,7 +218,7 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
     first_rows = np.cumsum([0, *(len(contact.fixed) for contact in arrays.contacts)])
     paths = tuple(_path_modes(one) for one in arrays.contacts)
     for i, (one, along) in enumerate(zip(arrays.contacts, paths, strict=True)):
-        constants[i, [at.START, at.GAP]] = one.at, one.gap
+        constants[i, [at.START, at.GAP]] = one.at, one.height
         if along is not None:
             path = along.path
             angles = np.stack([path.rate, path.phase], axis=1).ravel()
@@ -239,7 +242,8 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
             circles[i] = next(k for k, body in enumerate(arrays.turning) if body.span == one.circle.span)
             constant[first_rows[i] : first_rows[i + 1], slice(*one.circle.span)] = 0.0
     compliance = np.ascontiguousarray(constant @ modes.mobility(constant).T)
-    return ContactBlocks(constants, codes, laws, rows, first_rows, compliance, paths, circles)
+    profiles = np.array(of_one_width([_profile_of_march(one) for one in arrays.contacts]))
+    return ContactBlocks(constants, codes, laws, rows, first_rows, compliance, paths, circles, profiles)
 
 
 def _reach(arrays: Assembly, modes: Recurrence) -> Array:
@@ -250,6 +254,14 @@ def _reach(arrays: Assembly, modes: Recurrence) -> Array:
         rows = np.array([arrays.contacts[i].rows_at(arrays.contacts[i].at)[0] for i in soft])
         reach[soft] = np.abs(rows @ modes.sawtooth(rows).T).sum(axis=1)
     return reach
+
+
+def _profile_of_march(one: ContactRows) -> Array:
+    """Return the numbers of the profile of a contact's track, none without one."""
+    if one.profile is None:
+        return np.zeros(0)
+    pieces = one.profile.pieces
+    return np.concatenate([[len(pieces), one.profile.periodic], one.profile.place, pieces.ravel()])
 
 
 def _path_modes(one: ContactRows) -> PathModes | None:

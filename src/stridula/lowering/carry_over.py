@@ -11,7 +11,7 @@ import numpy as np
 from .._kernels.layout import columns as at
 from ..arrays import Array
 from ..bodies import AxisymmetricBody, BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate
-from ..contact import PointContact
+from ..contact import PointContact, Profile
 from ..records.state import State
 from ..system import System
 from .assembly import Assembly
@@ -91,16 +91,21 @@ def _whatever_its_speed(before: AxisymmetricBody, now: AxisymmetricBody) -> bool
 
 
 def _is_like_contact(before: PointContact, now: PointContact) -> bool:
-    """Return whether contacts have the same gap and direction, and tracks of the same kind."""
+    """Return whether contacts have the same gap and direction, and tracks of the same kind and profile."""
     return (
         (before.gap, before.inclination) == (now.gap, now.inclination)
         and (before.path_body is None) == (now.path_body is None)
         and (before.rigid_track is None) == (now.rigid_track is None)
+        and _profile_of(before) == _profile_of(now)
         and before.yields == now.yields
         and (now.path_body is not None or before.at == now.at)
         and _is_like_point(before.tip, now.tip)
         and _is_like_point(before.touched_point, now.touched_point)
     )
+
+
+def _profile_of(contact: PointContact) -> Profile | None:
+    return None if contact.rigid_track is None else contact.rigid_track.profile
 
 
 def _is_like_point(before: BodyPoint | None, now: BodyPoint | None) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..contact import LAWS, PointContact
+from ..contact import LAWS, PointContact, Profile
 from ..contact.stiffness import ContactStiffness, force_at, slopes_at
 from .coordinates import Coordinates
 from .turning_modes import TurningModes
@@ -98,6 +98,29 @@ class ContactRows:
     def yields(self) -> ContactStiffness | None:
         """Stiffness of the contact along the normal, None if it is rigid."""
         return self.contact.yields
+
+    @property
+    def profile(self) -> Profile | None:
+        """Shape of the surface of its track, None if it is flat."""
+        return None if self.contact.rigid_track is None else self.contact.rigid_track.profile
+
+    def height_at(self, place: float) -> float:
+        """Return the height of the surface of its track at a place along its material [m]."""
+        return 0.0 if self.profile is None else float(self.profile.height_at(place))
+
+    def slope_at(self, place: float) -> float:
+        """Return the slope of the surface of its track at a place along its material [1]."""
+        return 0.0 if self.profile is None else float(self.profile.slope_at(place))
+
+    def gap_at(self, position: Array) -> float:
+        """Return the gap at the start [m], at modal positions and over the profile of its track."""
+        rows = self.rows_at(self.at)
+        return float(self.height + rows[0] @ position) - self.height_at(float(self.at + rows[1] @ position))
+
+    @property
+    def height(self) -> float:
+        """Height of the tip over the plane of its track at the start, without displacements [m]."""
+        return self.gap + self.height_at(self.at)
 
     @property
     def gap(self) -> float:

@@ -14,6 +14,8 @@ from ..system import System
 from .assembly import Assembly
 from .time_scales import expected_stiffness
 
+# Slope of a profile from which its tilt is no longer small against usual friction.
+STEEP = 0.1
 # Effects of second order matter from this share of a critical speed: centrifugal stiffening then raises the frequencies
 # of discs by some percent.
 NEAR_CRITICAL = 0.3
@@ -28,7 +30,8 @@ MOST_MODES = 300
 
 def notes_of(system: System, arrays: Assembly, duration: float) -> list[str]:
     """Return the notes on a system that is simulated for a duration [s]."""
-    return [*_bodies(system), *_at_rest(system), *_frictionless(system), *_near_cutoff(system, arrays, duration)]
+    near = _near_cutoff(system, arrays, duration)
+    return [*_bodies(system), *_at_rest(system), *_frictionless(system), *_steep(system), *near]
 
 
 def _bodies(system: System) -> Iterator[str]:
@@ -84,6 +87,14 @@ def _frictionless(system: System) -> Iterator[str]:
     ]
     if rigid:
         yield f"rigid along their contacts, so that friction does not move them: {_once(rigid)}"
+
+
+def _steep(system: System) -> Iterator[str]:
+    """Yield notes on profiles whose slopes are not small."""
+    for name, contact in zip(system.contact_names, system.contacts, strict=True):
+        profile = contact.rigid_track and contact.rigid_track.profile
+        if profile and profile.steepest >= STEEP:
+            yield f"{name}: its profile is as steep as {profile.steepest:.2g}; forces keep the directions of the plane"
 
 
 def _is_frictionless(contact: Any) -> bool:

@@ -10,6 +10,8 @@ from .assembly import Assembly
 
 # Number of times at which loads are evaluated.
 TIMES = 256
+# Share of the duration over which speeds at an instant are taken.
+INSTANT = 1e-6
 # Contact force expected under a load that begins at once, relative to the load.
 OVERSHOOT = 2.0
 
@@ -41,6 +43,26 @@ def fastest_vibration(arrays: Assembly, duration: float) -> float:
     return float(np.sqrt(max(np.linalg.eigvalsh(0.5 * (stiffness + stiffness.T))[-1], 0.0)))
 
 
+def fastest_passage(arrays: Assembly, duration: float) -> float:
+    """Return the highest angular frequency [rad/s] at which waves of profiles pass under tips, 0 without any.
+
+    Tracks and tips move as imposed within `duration` [s], and tips as at the start; other motion is not known before.
+    """
+    if all(one.profile is None for one in arrays.contacts):
+        return 0.0
+    speeds = zip(arrays.contacts, _passing(arrays, duration), strict=True)
+    return max(2.0 * np.pi * speed / one.profile.wavelength for one, speed in speeds if one.profile is not None)
+
+
+def _passing(arrays: Assembly, duration: float) -> list[float]:
+    """Return the largest speed of each tip along its track [m/s], by imposed motion and that at the start."""
+    times, instant = np.linspace(0.0, duration, TIMES), INSTANT * duration
+    moved = arrays.motion(times + instant, instant) - arrays.motion(times, instant)
+    speeds = (moved[:, :, at.TIP_MOTION] - moved[:, :, at.TRACK_MOTION]) / instant
+    own = np.array([one.fixed[1] @ arrays.velocity for one in arrays.contacts])
+    return np.abs(speeds + own).max(axis=0).tolist()
+
+
 def expected_stiffness(arrays: Assembly, duration: float) -> Array:
     """Return the stiffness of each contact that has one [N/m] under the largest force expected within `duration` [s].
 
@@ -53,7 +75,7 @@ def expected_stiffness(arrays: Assembly, duration: float) -> Array:
     times = np.linspace(0.0, duration, TIMES)
     factors = arrays.signals.factors(times, times[1])
     lifts = np.gradient(arrays.motion(times, times[1])[:, :, at.GAP_MOTION], times, axis=0)
-    found = []
+    passing, found = _passing(arrays, duration), []
     for number, one in enumerate(arrays.contacts):
         if one.yields is None:
             continue
@@ -62,7 +84,8 @@ def expected_stiffness(arrays: Assembly, duration: float) -> Array:
         pull = -(row @ arrays.loads.T) @ factors.reshape(len(arrays.loads), -1) if len(arrays.loads) else np.zeros(1)
         pressing = max(float(pull.max()), 0.0)
         gap = float(one.gap + one.fixed[0] @ arrays.position)
-        speed = max(-float(one.fixed[0] @ arrays.velocity + lifts[:, number].min()), 0.0)
+        rising = 0.0 if one.profile is None else one.profile.steepest * passing[number]
+        speed = max(rising - float(one.fixed[0] @ arrays.velocity + lifts[:, number].min()), 0.0)
         energy = 0.5 * speed**2 + pressing * max(gap, 0.0)
         found.append(_steepest(one.yields.numbers, energy / mobility, OVERSHOOT * pressing / mobility, -gap))
     return np.array(found)

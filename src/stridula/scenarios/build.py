@@ -32,7 +32,7 @@ from ..bodies.drawn_surfaces import drawn_of
 from ..bodies.sections import SECTIONS
 from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, listed, suggestion
-from ..contact import LAWS, STIFFNESSES, PointContact, RigidTrack, SurfaceContact
+from ..contact import LAWS, STIFFNESSES, PointContact, Profile, RigidTrack, SurfaceContact
 from ..disk import is_there
 from ..drives import Drive
 from ..integration import GaussSeidel
@@ -347,8 +347,15 @@ class Builder:
         for name in ("history", "normal_history"):
             if table.get(name) is not None:
                 table[name] = self._history((*path, name), table[name])
+        if table.get("profile") is not None:
+            table["profile"] = self._profile((*path, "profile"), table["profile"])
         with self._within(*path):
             return RigidTrack(**{name: value for name, value in table.items() if value is not None})
+
+    def _profile(self, path: Place, table: Tables) -> Any:
+        with self._within(*path):
+            return Profile(**table)
+        return None
 
     def _circle(self, path: Place, table: Tables) -> Any:
         body = self.bodies[table["body"]]

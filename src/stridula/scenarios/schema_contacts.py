@@ -6,7 +6,7 @@ from dataclasses import fields
 from typing import TYPE_CHECKING, Any, Literal
 
 from ..connections import CONNECTIONS
-from ..contact import LAWS, STIFFNESSES, Coulomb, PointContact, RigidTrack, SurfaceContact
+from ..contact import LAWS, STIFFNESSES, Coulomb, PointContact, Profile, RigidTrack, SurfaceContact
 from . import fields as is_
 from .derived import Keys, one_of, table_of
 from .schema_drives import History
@@ -123,7 +123,10 @@ else:
         "normal_history": (History | None, None, "the same along its normal"),
         "name": (str, "", "name in records"),
     }
-    _rigid = table_of(RigidTrack, "kind", "rigid", "beam, plate, rigid, point or circle", title="Rigid", after=_moved)
+    _repeats = {"periodic": (bool, False, "whether it repeats: the last point is then the first of the next period")}
+    _profile = table_of(Profile, after=_repeats)
+    _shaped = _moved | {"profile": (_profile | None, None, "height of its surface over the place; flat if left out")}
+    _rigid = table_of(RigidTrack, "kind", "rigid", "beam, plate, rigid, point or circle", title="Rigid", after=_shaped)
     _sides = {
         "name": (str, "", "name in records"),
         "tip": (Place, ..., "body and point that touch"),

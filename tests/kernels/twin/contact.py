@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 import stridula as st
 
@@ -39,6 +40,8 @@ class Contact:
         frozen = isinstance(contact.track, st.BodyPoint)
         self.other = bodies.trace(contact.track) if frozen else np.zeros((2, bodies.size))
         self.apart = bodies.trace(contact.tip) - self.other
+        self.surface, self.pushed = surface_of(contact.track), 0.0
+        self.above = contact.gap + self.surface(contact.at)
 
     # Steps 2 and 3.
 
@@ -46,6 +49,9 @@ class Contact:
         """Take traces and imposed motions at the end of the step for all of it."""
         self.imposed = self.imposed_at(t)
         self.traces = self.traces_at(self.place(trial))
+        # The forces are expected to advance it as in the last step.
+        self.tried = self.material(trial)
+        self.rise = self.surface(self.contact.at + self.tried + self.pushed)
 
     def traces_at(self, x):
         track, moved, slopes = self.contact.track, self.other.copy(), np.zeros((2, self.bodies.size))
@@ -74,10 +80,10 @@ class Contact:
         return self.contact.at + self.imposed.tip + self.tangent @ self.apart @ q
 
     def height(self, q):
-        return self.contact.gap + self.imposed.lift + self.upright @ self.apart @ q
+        return self.above + self.imposed.lift + self.upright @ self.apart @ q
 
     def gap(self, q):
-        return self.contact.gap + self.imposed.lift + self.traces.gap @ q
+        return self.above + self.imposed.lift + self.traces.gap @ q - self.rise
 
     def material(self, q):
         """Place of the tip in the material of the track, from the initial one."""
@@ -99,8 +105,10 @@ class Contact:
         """Start from the motion of the bodies; it is closed if its gap is zero."""
         earlier, later = self.imposed_at(-h), self.imposed_at(h)
         self.imposed = earlier
-        self.place_before = self.place(q_before)
-        self.imposed, self.traces = self.imposed_at(0.0), self.traces_at(self.contact.at)
+        self.place_before, self.traces = self.place(q_before), self.traces_at(self.contact.at)
+        self.rise_before = self.surface(self.contact.at + self.material(q_before))
+        self.imposed = self.imposed_at(0.0)
+        self.rise = self.last_rise = self.surface(self.contact.at + self.material(q))
         self.last_place, self.last_gap = self.place(q), self.gap(q)
         self.last_material = self.anchor = self.material(q)
         slip = self.traces.slip @ (q - q_before) + self.imposed.tip - earlier.tip - (self.imposed.track - earlier.track)
@@ -119,8 +127,9 @@ class Contact:
         elif speed != 0.0:
             now.given = np.sign(speed) * curve(law, abs(speed))
 
-    def press(self, touch):
-        """Have the forces of `touch` before the start."""
+    def press(self, touch, pushed):
+        """Have the forces of `touch` before the start, which advance it in a step."""
+        self.pushed = pushed
         self.closed, self.stuck = float(touch.status != SEPARATED), float(touch.status == STICKING)
         self.before.status = self.before.status or touch.status
         self.before.normal, self.before.tangential = touch.normal, touch.tangential
@@ -155,6 +164,8 @@ class Contact:
         self.stuck = way.stuck if way else 0.0
         self.last_gap, self.last_material = self.gap(q), self.last_material + slip
         self.place_before, self.last_place = self.last_place, self.place(q)
+        self.rise_before, self.last_rise = self.last_rise, self.rise
+        self.pushed = self.material(q) - self.tried
         if self.stuck < 1 or last.status != STICKING:
             self.anchor = self.last_material
         self.before = Before(
@@ -167,6 +178,19 @@ class Contact:
             tangential=touch.tangential,
             past=way.past if way else 0.0,
         )
+
+
+def surface_of(track):
+    """Height of the surface of a track over the place along its material."""
+    profile = track.profile if isinstance(track, st.RigidTrack) else None
+    if profile is None:
+        return lambda place: 0.0
+    first, last = profile.place[0], profile.place[-1]
+    if profile.periodic:
+        wave = CubicSpline(profile.place, profile.height, bc_type="periodic")
+        return lambda place: float(wave(first + (place - first) % (last - first)))
+    bend = CubicSpline(profile.place, profile.height, bc_type=((1, 0.0), (1, 0.0)))
+    return lambda place: float(bend(min(max(place, first), last)))
 
 
 # Shapes of tracks: displacement and slope along the path, normal to the track and along it.

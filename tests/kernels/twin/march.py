@@ -89,8 +89,9 @@ def start(contacts, bodies, scheme, h):
         _, touches = solve(without_forces(closed, trial, rows @ answers.T, h))[0]
         q_before = under(force + rows.T @ forces_of(touches))
         begin(q_before)
+        push = load @ rows.T @ forces_of(touches)
         for one, touch in zip(closed, touches, strict=True):
-            one.press(touch)
+            one.press(touch, one.traces.slip @ push)
     for one in contacts:
         one.before.given = None
     return q_before, q
@@ -141,6 +142,7 @@ class Ledger:
             sums.friction += work if has_state(one.before.law) else abs(work)
             slope = (touch.normal * one.traces.slopes[1] - touch.tangential * one.traces.slopes[0]) @ q_new
             sums.convection += slope * (one.place(q_new) - one.place_before) / 2
+            sums.convection += touch.normal * (one.rise - one.rise_before) / 2
         d, d_before = q_new - q, q - q_before
         sums.damping += middle @ self.inverse @ (d - self.b @ d_before) - self.kinetic(d) + self.kinetic(d_before)
         sums.stored = self.kinetic(d) + q_new @ self.stiffness @ q / 2 + self.in_springs

@@ -8,7 +8,7 @@ import numba
 from ..lanes.compiled import overloaded, strict
 from ..lanes.operations import choose, lane, spread, with_lane
 from ..lanes.vectors import LANES, VECTOR
-from ..layout.contact_values import Law
+from ..layout.contact_values import Law, Profile
 
 # Stubs lack what types of tuples have.
 types: Any = numba.core.types
@@ -51,7 +51,7 @@ def _written(kind: Any, of_kind: Callable[..., str | None], makers: dict[str, An
 
 def _expanded(arguments: str, kind: Any, of_kind: Callable[..., str | None], *values: str) -> Any:
     """Return a function that does for tuples of a type, written out, what `of_kind` says for what is in them."""
-    names = {one.__name__: one for one in (choose, lane, spread, with_lane, Law)}
+    names = {one.__name__: one for one in (choose, lane, spread, with_lane, Law, Profile)}
     written = _written(kind, of_kind, names, *values)
     return eval(f"lambda {arguments}: {written}", names)
 
@@ -59,11 +59,11 @@ def _expanded(arguments: str, kind: Any, of_kind: Callable[..., str | None], *va
 def _in_lane(kind: Any, value: str) -> str | None:
     if kind is VECTOR:
         return f"lane({value}, i)"
-    if isinstance(kind, types.BaseNamedTuple) and kind.instance_class is Law:
-        # The parameters of each run have a row.
-        at_rest = _in_lane(kind[Law._fields.index("at_rest")], f"{value}.at_rest")
-        normal = _in_lane(kind[Law._fields.index("normal")], f"{value}.normal")
-        return f"Law({value}.code, {value}.table, {value}.row + i, {at_rest}, {normal})"
+    if isinstance(kind, types.BaseNamedTuple) and "row" in kind.fields:
+        # The numbers of each run have a row.
+        members = (_in_lane(one, f"{value}.{name}") for name, one in zip(kind.fields, kind, strict=True))
+        rows = (f"{one} + i" if name == "row" else one for name, one in zip(kind.fields, members, strict=True))
+        return f"{kind.instance_class.__name__}({', '.join(map(str, rows))})"
     return None if isinstance(kind, types.BaseTuple) else value
 
 

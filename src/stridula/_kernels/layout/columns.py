@@ -57,7 +57,8 @@ COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, CURVE, IN_SERIES, LUGRE, AG
 # tip's abscissa at the last two steps, last slip and the one before, internal state of the law, forces and gap of the
 # last step, share of the last step in which it was closed if it still is, gap of the step before the last, part of the
 # ratio of the next step's forces that lies before it, share of the last step in which it stuck, gap of the step before
-# the last two.
+# the last two; under a profile its height at the last step and at the one before, and slip by the contact forces in the
+# last step.
 (
     MATERIAL,
     ANCHOR,
@@ -75,6 +76,9 @@ COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, CURVE, IN_SERIES, LUGRE, AG
     PAST_RATIO,
     STUCK_SHARE,
     EARLIEST_GAP,
+    LAST_HEIGHT,
+    EARLIER_HEIGHT,
+    PUSHED,
     MATERIAL_B,
     ANCHOR_B,
     ABSCISSA_B,
@@ -83,14 +87,15 @@ COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, CURVE, IN_SERIES, LUGRE, AG
     FRICTION_STATE_B,
     LAST_TANGENTIAL_B,
     PAST_RATIO_B,
-) = range(24)
-CARRIED = 24
+) = range(27)
+CARRIED = 27
 
 # State of a contact in a step: gap, slip and abscissa, without its forces, then with them; forces, status, whether it
 # jams; while the contacts are solved together whether it may touch, has broken away, has been let go. Additional give
 # for a unit of force, and additional indentation without force. In the system of all contacts: numbers of the equations
 # of its normal and its tangential force, below 0 without one, the ratio of these forces if it slides; forces and status
-# to restore, and the status that it wants.
+# to restore, and the status that it wants. Height of the profile of its
+# track, and slip without any contact force.
 (
     FREE_GAP,
     FREE_SLIP,
@@ -113,14 +118,16 @@ CARRIED = 24
     TANGENTIAL_KEPT,
     STATUS_KEPT,
     STATUS_WANTED,
+    HEIGHT,
+    TRIED_SLIP,
     FREE_SLIP_B,
     NEW_SLIP_B,
     TANGENTIAL_NOW_B,
     TANGENTIAL_EQUATION_B,
     RATIO_B,
     TANGENTIAL_KEPT_B,
-) = range(27)
-IN_STEP = 27
+) = range(29)
+IN_STEP = 29
 
 # Sums of each contact over the steps of a sample, and its place at the beginning of the sample.
 (

@@ -68,6 +68,13 @@ class Law(NamedTuple):
     normal: Number
 
 
+class Profile(NamedTuple):
+    """The profile of the track of a contact: the table of those of all contacts, and its row; see `profiles`."""
+
+    table: Array
+    row: int
+
+
 class Free(NamedTuple):
     """Motion of a contact in a step without its own forces, and what these change.
 

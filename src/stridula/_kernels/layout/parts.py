@@ -115,6 +115,8 @@ class Contacts(NamedTuple):
         Space to solve for the forces of all contacts of a run together.
     now, sums : ndarray, a column a run
         State of each contact in a step; sums over a sample.
+    profiles : ndarray, shape (contacts runs, numbers)
+        Profile of the track of each contact in each run, see `profiles`; no numbers without any.
     """
 
     codes: np.ndarray
@@ -128,6 +130,7 @@ class Contacts(NamedTuple):
     dense: np.ndarray
     now: np.ndarray
     sums: np.ndarray
+    profiles: np.ndarray
 
 
 class Carried(NamedTuple):
