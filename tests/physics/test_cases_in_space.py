@@ -12,6 +12,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import stridula as st
+from kernels import systems
 from stridula.verification.cases import CASES
 
 from .into_space import IntoSpace
@@ -162,6 +163,19 @@ def test_cases_that_are_not_turned_have_no_motion(name):
         assert not hasattr(sys.modules[BY_NAME[name].run.__module__], "simulate")
         return
     assert rows_in_space(name, np.eye(3))[1].runs == 0
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("track", [systems.BELT, systems.SHAKEN], ids=["belt", "shaken belt"])
+def test_feet_that_cannot_move_across_stick_as_in_the_plane(track, seed):
+    """The rows of a block of the plane along the second tangent are round-off, under which forces once grew."""
+    flat = systems.pad_on(track, [st.Coulomb(0.4)] * 3)
+    space = IntoSpace(Rotation.random(random_state=seed).as_matrix())
+    plane, turned = (run(flat, 0.1, step=1e-4, probes=[]) for run in (st.simulate, space.simulate))
+    for name in ("normal_force", "tangential_force"):
+        size = float(np.abs(plane[name]).max())
+        np.testing.assert_allclose(turned[name].values, plane[name].values, atol=1e-8 * size)
+    assert 0.1 < float((plane["status"] == 1).mean()) < 1.0
 
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)

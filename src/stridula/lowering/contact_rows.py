@@ -15,6 +15,9 @@ from .turning_modes import TurningModes
 # Laws with an internal state, which cannot be transferred to another law.
 STATEFUL = tuple(law.law for law in LAWS if law.state_units)
 
+# Sum of the terms of a row, relative to their size, that is due to rounding.
+ROUND_OFF = 16.0 * np.finfo(float).eps
+
 
 @dataclass(frozen=True)
 class ContactRows:
@@ -130,9 +133,13 @@ class ContactRows:
 
 def contact_rows(contact: PointContact, coordinates: Coordinates, turning: tuple[TurningModes, ...]) -> ContactRows:
     frame = contact.frame
-    fixed = frame @ coordinates.trace(contact.tip)[: len(frame)]
+    traces = coordinates.trace(contact.tip)[: len(frame)]
+    fixed, terms = frame @ traces, np.abs(frame) @ np.abs(traces)
     if contact.touched_point is not None:
-        fixed = fixed - frame @ coordinates.trace(contact.touched_point)[: len(frame)]
+        traces = coordinates.trace(contact.touched_point)[: len(frame)]
+        fixed, terms = fixed - frame @ traces, terms + np.abs(frame) @ np.abs(traces)
+    # A tip that cannot move along a tangent has no compliance there, and not that of round-off, which forces could use.
+    fixed[np.abs(fixed) <= ROUND_OFF * terms] = 0.0
     if contact.law.depends_on_speed:
         # Without mass nothing balances friction that falls with the slip speed.
         fixed[1:, coordinates.massless] = 0.0
