@@ -263,3 +263,10 @@ def test_a_changed_spring_is_another_one():
     assert replace(spring, force=[1.0, 3.0]) != spring
     assert spring.pull(0.0) == 1.0
     assert spring.pull(-1.0) == 0.0
+
+
+def test_drawings_name_the_stiffness_at_rest():
+    figure = st.plot.system(springs_of(0))
+    words = " ".join(text.get_text() for text in figure.findobj(match=lambda one: hasattr(one, "get_text")))
+    assert "cubic spring 100 N/m at rest" in words
+    assert "tabulated spring 50 N/m at rest" in words

@@ -429,6 +429,8 @@ def supports_of(body: Any) -> tuple[str, ...]:
 
 def connection_value(connection: Any) -> str:
     """Return a description of the stiffness or coefficient of a connection, and of its motion."""
+    if connection.bend is not None:
+        return f"{spoken(connection.stiffness_at_rest, 'N/m')} at rest"
     stiffness, damping = connection.rates
     words = spoken(stiffness, "N/m") if stiffness else spoken(damping, "N s/m")
     return f"{words}, moved{in_time(connection.history)}" if connection.moved_by else words
