@@ -9,10 +9,10 @@ from unittest import mock
 
 import numpy as np
 import pytest
+from kernels import systems
 from scipy.spatial.transform import Rotation
 
 import stridula as st
-from kernels import systems
 from stridula.verification.cases import CASES
 
 from .into_space import IntoSpace

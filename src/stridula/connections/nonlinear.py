@@ -6,13 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
+from pathlib import Path
 from typing import Annotated, ClassVar
 
 import numpy as np
 
 from ..arrays import Array
 from ..bodies import BodyPoint
-from ..checks import ArgumentError
+from ..checks import ArgumentError, positive
+from ..columns import read_columns
 from ..declared import Axis, Each, Number, check_declared
 from ..histories import Constant, History
 from .ends import along, check_ends
@@ -213,6 +215,52 @@ class TabulatedSpring(NonlinearSpring):
         if len(self.force) != len(self.displacement):
             words = f"have as many values as displacement, {len(self.displacement)}"
             raise ArgumentError("force", words, got=str(len(self.force)))
+
+    @classmethod
+    def read(
+        cls,
+        path: str | Path,
+        first: BodyPoint,
+        second: BodyPoint | None = None,
+        columns: Sequence[str | int] = (0, 1),
+        *,
+        direction: str | Sequence[float] = "x",
+        displacement_unit: float = 1.0,
+        force_unit: float = 1.0,
+    ) -> TabulatedSpring:
+        """Read a table from a text file, such as a CSV.
+
+        Parameters
+        ----------
+        path : str or Path
+            File with a line for each displacement; values are separated by commas, semicolons, tabs or blanks. A first
+            line may name the columns; lines that begin with ``#`` are skipped. Lines need not be in order.
+        first, second : BodyPoint
+            Both ends; the ground if the second is left out.
+        columns : sequence, optional
+            Columns of displacement and force, by name or by number from 0.
+        direction : str or sequence of float, optional
+            World direction along which it acts.
+        displacement_unit, force_unit : float, optional
+            Units in the file, such as 1e-3 for mm and 1e3 for kN [m, N].
+
+        Raises
+        ------
+        ValueError
+            If the file has no such table; the message names file and line.
+        """
+        if len(columns) != 2:
+            raise ArgumentError("columns", "be two, of displacement and force", columns)
+        places, forces = (np.array(one) for one in read_columns(path, columns))
+        order = np.argsort(places, kind="stable")
+        try:
+            table = {
+                "displacement": (places[order] * positive("displacement_unit", displacement_unit)).tolist(),
+                "force": (forces[order] * positive("force_unit", force_unit)).tolist(),
+            }
+            return cls(first, second, direction=direction, **table)
+        except ArgumentError as error:
+            raise error.inside(str(path)) from None
 
     @cached_property
     def _slopes(self) -> Array:

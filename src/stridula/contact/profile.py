@@ -13,8 +13,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError, count, finite, instance, positive
+from ..columns import read_columns
 from ..declared import Each, Number, check_declared
-from .columns import read_columns
 
 # Points of a sine: its curvature is then right to 5e-5.
 POINTS_OF_SINE = 256

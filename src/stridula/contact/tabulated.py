@@ -13,8 +13,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError
+from ..columns import read_columns
 from ..declared import Each, Number, OneOrEach
-from .columns import read_columns
 from .curves import OF_TABLE, Curve, flat_sections, in_pieces
 from .friction_law import CURVE, FrictionLaw
 from .linearised import Linearised

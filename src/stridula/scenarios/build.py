@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import MISSING, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -33,6 +33,7 @@ from ..bodies.sections import SECTIONS
 from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, listed, suggestion
 from ..contact import LAWS, STIFFNESSES, PointContact, Profile, RigidTrack, SurfaceContact
+from ..declared import declared
 from ..disk import is_there
 from ..drives import Drive
 from ..integration import GaussSeidel
@@ -281,7 +282,7 @@ class Builder:
         if not given:
             return {}
         with self._within(*path, "friction"):
-            return {"friction": FRICTIONS[given.pop("law")](**given)}
+            return {"friction": made_or_read(FRICTIONS[given.pop("law")], given)}
         return {}
 
     def _stiffness(self, path: Place, table: Tables) -> dict[str, Any]:
@@ -354,7 +355,7 @@ class Builder:
 
     def _profile(self, path: Place, table: Tables) -> Any:
         with self._within(*path):
-            return Profile(**table)
+            return made_or_read(Profile, table)
         return None
 
     def _circle(self, path: Place, table: Tables) -> Any:
@@ -387,7 +388,7 @@ class Builder:
         else:
             table.pop("history", None)
         with self._within(*path):
-            return CONNECTIONS[kind](first, other, **table)
+            return made_or_read(CONNECTIONS[kind], table, first, other)
 
     def _drive(self, number: int, table: Tables) -> Any:
         path = ("drives", number)
@@ -509,6 +510,26 @@ class Builder:
     def _stop_at_problems(self) -> None:
         if self.problems:
             raise ScenarioError(self.problems)
+
+
+def made_or_read(kind: Any, table: Tables, *ends: Any) -> Any:
+    """Return a value of a kind from its table, or from the file that the table names."""
+    if not hasattr(kind, "read"):
+        return kind(*ends, **table)
+    given = {name: value for name, value in table.items() if value is not None}
+    needed = [field.name for field in declared(kind) if field.default is MISSING]
+    if "file" in given:
+        for name in needed:
+            if name in given:
+                raise ArgumentError("file", f"be left out with {name}", given["file"])
+        return kind.read(given.pop("file"), *ends, **given)
+    of_files = [name for name in given if name == "columns" or name.endswith("_unit")]
+    if of_files:
+        raise ArgumentError(of_files[0], "be left out without a file", given[of_files[0]])
+    for name in needed:
+        if name not in given:
+            raise ArgumentError(name, "be given, unless a file has it", got="nothing")
+    return kind(*ends, **given)
 
 
 def out_of_range(key: str) -> str:

@@ -44,6 +44,7 @@ def table_of(
     is_usual: bool = False,
     before: Keys | None = None,
     after: Keys | None = None,
+    from_file: Keys | None = None,
 ) -> type[Table]:
     """Return the table of a dataclass.
 
@@ -60,12 +61,16 @@ def table_of(
         Whether this is the kind of a table without the tag.
     before, after : mapping, optional
         Type, default and description of other keys, before and after the declared fields.
+    from_file : mapping, optional
+        The same of keys with which a file has the declared fields that must be given.
     """
-    before, after = before or {}, after or {}
+    before, after = before or {}, {**(after or {}), **(from_file or {})}
     keys: dict[str, Any] = {tag: (Literal[word], word if is_usual else ...)} if tag else {}
     keys |= {key: (kind, default) for key, (kind, default, _) in before.items()}
     keys |= {
-        field.name: (_read(field), ... if field.default is dataclasses.MISSING else field.default)
+        field.name: (_read(field) | None, None)
+        if from_file and field.default is dataclasses.MISSING
+        else (_read(field), ... if field.default is dataclasses.MISSING else field.default)
         for field in declared(description)
     }
     keys |= {key: (kind, default) for key, (kind, default, _) in after.items()}

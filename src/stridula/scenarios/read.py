@@ -23,6 +23,8 @@ from .shipped import shipped
 FILES = ("file", "mass", "stiffness", "damping", "labels", "mesh")
 # Tables of a body that may also name a file.
 MESHES = ("profile", "mesh")
+# Parts of a scenario whose tables may be in files.
+WITH_TABLES = ("contact", "contacts", "surfaces", "connections")
 # Table of a mesh with those of its parts.
 PARTS = "parts"
 
@@ -85,6 +87,9 @@ def tables_of_text(text: str, name: str) -> dict[str, Any]:
     if base is not None and not (isinstance(base, str) and base in bases):
         near = suggestion(base, list(bases))
         raise ScenarioError([f"base must be one of {', '.join(bases)} in a text, got {brief(base)}{near}"])
+    for key in WITH_TABLES:
+        if _has_file(tables.get(key)):
+            raise ScenarioError([f"{key} must not name files in a text"])
     named = tables.get("bodies")
     for body in named.values() if isinstance(named, dict) else ():
         if names_files(body):
@@ -132,11 +137,29 @@ def _tables_of(content: bytes, name: str, folder: Path) -> dict[str, Any]:
 
 
 def _with_files(tables: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the tables with the files of bodies resolved relative to the folder of the scenario file."""
+    """Return the tables with the files of bodies and of tables resolved relative to the folder of the scenario file."""
+    tables = tables | {key: _with_tables_of(tables[key], folder) for key in WITH_TABLES if key in tables}
     bodies = tables.get("bodies")
     if not isinstance(bodies, dict):
         return tables
     return tables | {"bodies": {name: _with_own_files(body, folder) for name, body in bodies.items()}}
+
+
+def _with_tables_of(part: Any, folder: Path) -> Any:
+    """Return a part of a scenario with the files of its laws, profiles and springs found from a folder."""
+    if isinstance(part, list):
+        return [_with_tables_of(one, folder) for one in part]
+    if not isinstance(part, dict):
+        return part
+    inside = {key: _with_tables_of(value, folder) for key, value in part.items()}
+    return inside | ({"file": str(folder / part["file"])} if isinstance(part.get("file"), str) else {})
+
+
+def _has_file(part: Any) -> bool:
+    """Return whether a law, a profile or a spring in a part of a scenario names a file."""
+    if isinstance(part, list):
+        return any(map(_has_file, part))
+    return isinstance(part, dict) and ("file" in part or any(map(_has_file, part.values())))
 
 
 def _with_own_files(body: Any, folder: Path) -> Any:

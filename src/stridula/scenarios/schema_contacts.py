@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from inspect import signature
 from typing import TYPE_CHECKING, Any, Literal
 
 from ..connections import CONNECTIONS
@@ -12,13 +13,31 @@ from .derived import Keys, one_of, table_of
 from .schema_drives import History
 from .tables import Table, number_or
 
+
+def from_file(kind: Any) -> Keys | None:
+    """Return the keys with which a file has the table of a kind, if it reads any."""
+    if not hasattr(kind, "read"):
+        return None
+    units = [name for name in signature(kind.read).parameters if name.endswith("_unit")]
+    size = "size of the {} of 1 in the file in SI units, such as 1e-3; 1 if left out"
+    return {
+        "file": (str | None, None, "text file that has the lists, such as a CSV, found beside this file"),
+        "columns": (list[int | str] | None, None, "columns of the file, by name or by number from 0"),
+        **{name: (float | None, None, size.format(name.removesuffix("_unit"))) for name in units},
+    }
+
+
 if TYPE_CHECKING:
     Friction = Any
     Stiffness = Any
     StiffnessOfArea = Any
 else:
     Friction = one_of(
-        "law", (table_of(law, "law", law.law, "law of friction", is_usual=law is Coulomb) for law in LAWS)
+        "law",
+        (
+            table_of(law, "law", law.law, "law of friction", is_usual=law is Coulomb, from_file=from_file(law))
+            for law in LAWS
+        ),
     )
     _law = one_of("kind", (table_of(kind, "kind", kind.kind, "linear, power law or hertz") for kind in STIFFNESSES))
     Stiffness, StiffnessOfArea = number_or(is_.Stiffness, _law), number_or(is_.StiffnessOfArea, _law)
@@ -124,7 +143,7 @@ else:
         "name": (str, "", "name in records"),
     }
     _repeats = {"periodic": (bool, False, "whether it repeats: the last point is then the first of the next period")}
-    _profile = table_of(Profile, after=_repeats)
+    _profile = table_of(Profile, after=_repeats, from_file=from_file(Profile))
     _shaped = _moved | {"profile": (_profile | None, None, "height of its surface over the place; flat if left out")}
     _rigid = table_of(RigidTrack, "kind", "rigid", "beam, plate, rigid, point or circle", title="Rigid", after=_shaped)
     _sides = {
@@ -163,7 +182,9 @@ else:
     Connection = one_of(
         "kind",
         [
-            table_of(kind, "kind", kind.kind, _kinds, before=ENDS, after=_moves if varies else {})
+            table_of(
+                kind, "kind", kind.kind, _kinds, before=ENDS, after=_moves if varies else {}, from_file=from_file(kind)
+            )
             for kind, varies in _varies.items()
         ],
     )

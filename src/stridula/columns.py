@@ -6,8 +6,8 @@ import csv
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..checks import ArgumentError
-from ..disk import opened
+from .checks import ArgumentError
+from .disk import opened
 
 
 def read_columns(path: str | Path, columns: Sequence[str | int]) -> list[list[float]]:
