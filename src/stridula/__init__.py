@@ -58,6 +58,7 @@ _HOME = {
         "SurfaceContact",
         "TabulatedFriction",
         "fit_friction",
+        "random_field",
     ),
     "checks": ("ArgumentError",),
     "connections": ("CubicSpring", "Dashpot", "Spring", "TabulatedSpring"),

@@ -91,6 +91,7 @@ from .contact import Stribeck as Stribeck
 from .contact import SurfaceContact as SurfaceContact
 from .contact import TabulatedFriction as TabulatedFriction
 from .contact import fit_friction as fit_friction
+from .contact import random_field as random_field
 from .cycles import NoCycle as NoCycle
 from .cycles import limit_cycle as limit_cycle
 from .cycles import lyapunov_exponent as lyapunov_exponent

@@ -7,6 +7,7 @@ from .laws import LAWS
 from .lugre import LuGre
 from .point_contact import PointContact
 from .profile import Profile
+from .random_fields import random_field
 from .rate_and_state import RateAndState
 from .rigid_track import RigidTrack
 from .stiffness import STIFFNESSES, ContactStiffness, HertzStiffness, LinearStiffness, PowerStiffness
@@ -38,4 +39,5 @@ __all__ = [
     "SurfacePoints",
     "TabulatedFriction",
     "fit_friction",
+    "random_field",
 ]

@@ -54,8 +54,9 @@ class SurfaceContact:
         perpendicular to its mean normal.
     track_face : str, optional
         Touched face, if the track is a `SolidBody`.
-    friction : FrictionLaw, optional
-        Friction law; no friction if left out.
+    friction : FrictionLaw or sequence of FrictionLaw, optional
+        Friction law, or one for each point, such as of a coefficient that varies over the face; no friction if left
+        out.
     gap : float, optional
         Distance in addition to that of the geometry [m].
     stiffness : float, LinearStiffness, PowerStiffness or HertzStiffness, optional
@@ -92,7 +93,7 @@ class SurfaceContact:
     face: str
     track: Any
     track_face: str = ""
-    friction: FrictionLaw = field(default_factory=lambda: Coulomb(0.0))
+    friction: FrictionLaw | Sequence[FrictionLaw] = field(default_factory=lambda: Coulomb(0.0))
     gap: Position = 0.0
     stiffness: ContactStiffness | float | None = None
     tangential_stiffness: Annotated[float, Number("N/m3", above=0.0)] | None = None
@@ -119,10 +120,15 @@ class SurfaceContact:
                 if given:
                     raise ArgumentError(name, "be left out except on a SolidBody", given)
         instance("name", self.name, str)
+        if hasattr(self.friction, "__iter__"):
+            object.__setattr__(self, "friction", tuple(self.friction))
         check_declared(self)
         if self.turning is not None:
             object.__setattr__(self, "turning", self._checked_turning(self.turning))
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
+        if len(self._laws) != self.areas.size:
+            words = f"be one law, or have {self.areas.size}, one for each point"
+            raise ArgumentError("friction", words, got=counted(len(self._laws), "law"))
         if self.wear is not None and len(self.wear) != self.areas.size:
             raise ArgumentError("wear", f"have {self.areas.size} depths, one for each point", got=str(len(self.wear)))
         if len(self.contacts) > MANY:
@@ -158,6 +164,12 @@ class SurfaceContact:
         return self.points.place
 
     @cached_property
+    def _laws(self) -> tuple[FrictionLaw, ...]:
+        """The law of each point."""
+        given: Any = self.friction
+        return given if isinstance(given, tuple) else (given,) * self.areas.size
+
+    @cached_property
     def contacts(self) -> tuple[PointContact, ...]:
         """The contacts of its points."""
         points, size = self.points, float(np.ptp(self.points.place, axis=0).max())
@@ -178,7 +190,7 @@ class SurfaceContact:
             contact = PointContact(
                 self.body.at(place.tolist()) if self.overlay else self.body.contact_point(self.face, number),
                 track,
-                friction=self.friction,
+                friction=self._laws[number],
                 gap=max(gap + self.gap, 0.0) + (0.0 if self.wear is None else self.wear[number]),
                 normal=tuple(facing.tolist()),
                 **self._directions(track, place, facing),
