@@ -133,12 +133,12 @@ class CubicSpring(NonlinearSpring):
         One end.
     second : BodyPoint, optional
         The other end, of the same or another body; the ground if left out.
+    direction : {"x", "y", "z"} or sequence of float, optional
+        World direction along which it acts: x, y, z, or its three components, of any length.
     stiffness : float
         Stiffness without a stretch [N/m].
     cubic : float
         Force for the cube of the stretch [N/m3].
-    direction : {"x", "y", "z"} or sequence of float, optional
-        World direction along which it acts: x, y, z, or its three components, of any length.
 
     Examples
     --------
@@ -184,12 +184,12 @@ class TabulatedSpring(NonlinearSpring):
         One end.
     second : BodyPoint, optional
         The other end, of the same or another body; the ground if left out.
+    direction : {"x", "y", "z"} or sequence of float, optional
+        World direction along which it acts: x, y, z, or its three components, of any length.
     displacement : sequence of float
         Displacements of the table [m], rising, two or more.
     force : sequence of float
         Force at each [N].
-    direction : {"x", "y", "z"} or sequence of float, optional
-        World direction along which it acts: x, y, z, or its three components, of any length.
 
     Examples
     --------

@@ -34,6 +34,7 @@ def random_field(
     Returns
     -------
     ndarray, shape (places,)
+        A number for each place.
 
     Examples
     --------
