@@ -26,8 +26,8 @@ Given = tuple[str, dict[str, tuple[str, Any]]]
 MODULES = {"": st, "analysis.": analysis, "plot.": plot, "scenarios.": scenarios, "studies.": studies}
 # Results, which users do not call.
 RESULTS = {
-    "Case", "CalibrationProgress", "Diverged", "DoubtfulValue", "Film", "Interrupted", "Modes", "Progress", "Scenario",
-    "ScenarioError", "SoundFile", "SweepProgress",
+    "Case", "CalibrationProgress", "Diverged", "DoubtfulValue", "Film", "Interrupted", "Modes", "NoCycle", "Progress",
+    "Scenario", "ScenarioError", "SoundFile", "SweepProgress",
 }  # fmt: skip
 # Films and models of hearing take seconds for valid arguments.
 SLOW = {

@@ -227,7 +227,8 @@ def test_a_stiffer_joint_and_another_friction_are_missed(monkeypatch):
 
 def test_a_chain_on_other_springs_is_missed(monkeypatch):
     spring = chains.CubicSpring
-    changed = {"stiffness": chains.GROUND, "cubic": 1.01 * chains.CUBIC}
+    # Softer, it has left the upper branch at the printed peak.
+    changed = {"stiffness": chains.GROUND, "cubic": 0.9 * chains.CUBIC}
     monkeypatch.setattr(chains, "CubicSpring", lambda point, **own: spring(point, **{**own, **changed}))
     assert missed(chains.cubic_chain()) == {"first harmonic at the peak", "the same"}
 
