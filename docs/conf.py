@@ -152,7 +152,8 @@ KEYS = {
     "": ("pair", "Keys of two beams"),
     "bodies: finite-element beam": ("bodies", "Keys of bodies"),
     "bodies: axisymmetric": ("meshed", "Keys of bodies with meshes"),
-    "contacts": ("contacts", "Keys of contacts, drives and simulation"),
+    "contacts": ("contacts", "Keys of contacts and surfaces"),
+    "connections: spring": ("connections", "Keys of connections, drives and simulation"),
 }
 HOMES = {
     "bodies": "Bodies",
