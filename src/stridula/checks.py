@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from difflib import get_close_matches
+from itertools import pairwise
 from numbers import Integral, Real
 from typing import Any, TypeVar
 
@@ -86,6 +87,13 @@ def _is_finite(number: Real | float) -> bool:
         return math.isfinite(number)
     except OverflowError:
         return False
+
+
+def rising(name: str, values: Sequence[float]) -> None:
+    """Raise ValueError unless each value is above the one before it."""
+    for number, (before, after) in enumerate(pairwise(values), start=1):
+        if after <= before:
+            raise ArgumentError(f"{name}[{number}]", f"be above {before!r}, the one before it", after)
 
 
 def positive(name: str, value: Any) -> float:

@@ -6,6 +6,9 @@ import csv
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
+from .arrays import Array
 from .checks import ArgumentError
 from .disk import opened
 
@@ -41,6 +44,13 @@ def read_columns(path: str | Path, columns: Sequence[str | int]) -> list[list[fl
     if not found[0]:
         raise ArgumentError("table", "have lines of numbers", got="none", where=str(path))
     return found
+
+
+def read_rising(path: str | Path, columns: Sequence[str | int]) -> list[Array]:
+    """Do `read_columns`, with the lines in the order of the first column, those of equal values as in the file."""
+    found = [np.array(one) for one in read_columns(path, columns)]
+    order = np.argsort(found[0], kind="stable")
+    return [one[order] for one in found]
 
 
 def _cells(line: str) -> list[str]:

@@ -11,12 +11,12 @@ import xarray as xr
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, at_most, count
 from ..records.checked import record
+from ..records.endings import FAILED
 from ..system import System
 from .panels import Panel
 
 # Share of the impulse of the first step that lies before the start of a run.
 BEFORE = 0.5
-DIVERGED = ("not finite", "contact unsolved", "energy created")
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def sampled(run: xr.Dataset, *names: str) -> tuple[float, float, int, list[Array
     """
     run = record("run", run).transpose("time", ...)
     record("run", run, *names, least=2)
-    if run.attrs.get("ended") in DIVERGED:
+    if run.attrs.get("ended") in FAILED:
         raise ArgumentError("run", "be one that did not diverge", run, got=f"one that ended {run.attrs['ended']!r}")
     time = run["time"].values
     interval = float((time[-1] - time[0]) / (time.size - 1))

@@ -32,6 +32,7 @@ ENDINGS = {
     "not finite": "failed: the state is no longer finite",
     "contact unsolved": "failed: the contact forces did not converge",
     "energy created": "failed: energy was created without a source",
+    "spring too stiff": "failed: the step is too long for the stiffness that a nonlinear spring has reached",
     "interrupted": "interrupted",
 }
 # Regimes that are cycles of one frequency.

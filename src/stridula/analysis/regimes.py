@@ -13,6 +13,7 @@ from ..checks import ArgumentError, instance, listed, within
 from ..records import checked
 from ..records.by_point import by_point
 from ..records.by_surface import groups
+from ..records.endings import FAILED
 from ..records.plain import PlainRecord, plain_of
 from .regime_measures import BUDDING, Measures, Signals, Thresholds, measures, other_tones
 from .several_contacts import sums
@@ -28,8 +29,6 @@ TRANSIENT = 0.1
 KEPT, GROWING = 0.5, 2.0
 # Number of periods in one slip above which a tone counts as sustained. A released mode is caught within one period.
 SUSTAINED = 2.0
-# Endings of failed runs.
-FAILED = ("not finite", "contact unsolved", "energy created")
 # Required variables of a record.
 NEEDED = (
     "status_share",

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Protocol, TypeGuard
 
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError
+from ..checks import ArgumentError, rising
 from ..declared import DAMPING_RATIO, DampingRatio, Each, Number, check_declared
 
 
@@ -126,9 +125,7 @@ class SampledDamping:
                 self.ratio,
                 got=f"{len(ratios)} and {len(frequencies)}",
             )
-        for number, (before, after) in enumerate(pairwise(frequencies), start=1):
-            if after <= before:
-                raise ArgumentError(f"frequency[{number}]", f"be above {before!r}, the one before it", after)
+        rising("frequency", frequencies)
 
     def rates(self, angular_frequency: Array) -> Array:
         """Return ``2 zeta w`` [1/s]."""

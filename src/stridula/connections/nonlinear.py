@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, ClassVar
 
@@ -13,8 +12,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..bodies import BodyPoint
-from ..checks import ArgumentError, positive
-from ..columns import read_columns
+from ..checks import ArgumentError, positive, rising
+from ..columns import read_rising
 from ..declared import Axis, Each, Number, check_declared
 from ..histories import Constant, History
 from .ends import along, check_ends
@@ -209,9 +208,7 @@ class TabulatedSpring(NonlinearSpring):
         super().__post_init__()
         if len(self.displacement) < 2:
             raise ArgumentError("displacement", "have two values or more", got=str(len(self.displacement)))
-        for number, (before, after) in enumerate(pairwise(self.displacement), start=1):
-            if after <= before:
-                raise ArgumentError(f"displacement[{number}]", f"be above {before!r}, the one before it", after)
+        rising("displacement", self.displacement)
         if len(self.force) != len(self.displacement):
             words = f"have as many values as displacement, {len(self.displacement)}"
             raise ArgumentError("force", words, got=str(len(self.force)))
@@ -251,12 +248,11 @@ class TabulatedSpring(NonlinearSpring):
         """
         if len(columns) != 2:
             raise ArgumentError("columns", "be two, of displacement and force", columns)
-        places, forces = (np.array(one) for one in read_columns(path, columns))
-        order = np.argsort(places, kind="stable")
+        places, forces = read_rising(path, columns)
         try:
             table = {
-                "displacement": (places[order] * positive("displacement_unit", displacement_unit)).tolist(),
-                "force": (forces[order] * positive("force_unit", force_unit)).tolist(),
+                "displacement": (places * positive("displacement_unit", displacement_unit)).tolist(),
+                "force": (forces * positive("force_unit", force_unit)).tolist(),
             }
             return cls(first, second, direction=direction, **table)
         except ArgumentError as error:

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, count, finite, instance, positive
-from ..columns import read_columns
+from ..checks import ArgumentError, count, finite, instance, positive, rising
+from ..columns import read_rising
 from ..declared import Each, Number, check_declared
 
 # Points of a sine: its curvature is then right to 5e-5.
@@ -59,9 +58,7 @@ class Profile:
         least = 4 if self.periodic else 2
         if len(self.place) < least:
             raise ArgumentError("place", f"have {least} values or more", self.place, got=str(len(self.place)))
-        for number, (before, after) in enumerate(pairwise(self.place), start=1):
-            if after <= before:
-                raise ArgumentError(f"place[{number}]", f"be above {before!r}, the one before it", after)
+        rising("place", self.place)
         if len(self.height) != len(self.place):
             words = f"have as many values as place, {len(self.place)}"
             raise ArgumentError("height", words, self.height, got=str(len(self.height)))
@@ -113,12 +110,11 @@ class Profile:
         """
         if len(columns) != 2:
             raise ArgumentError("columns", "be two, of place and height", columns)
-        places, heights = (np.array(one) for one in read_columns(path, columns))
-        order = np.argsort(places, kind="stable")
+        places, heights = read_rising(path, columns)
         try:
             given = (
-                places[order] * positive("place_unit", place_unit),
-                heights[order] * finite("height_unit", height_unit),
+                places * positive("place_unit", place_unit),
+                heights * finite("height_unit", height_unit),
             )
             return cls(given[0].tolist(), given[1].tolist(), periodic)
         except ArgumentError as error:

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError
-from ..columns import read_columns
+from ..checks import ArgumentError, rising
+from ..columns import read_rising
 from ..declared import Each, Number, OneOrEach
 from .curves import OF_TABLE, Curve, flat_sections, in_pieces
 from .friction_law import CURVE, FrictionLaw
@@ -102,11 +101,10 @@ class TabulatedFriction(FrictionLaw):
         """
         if len(columns) not in (2, 3):
             raise ArgumentError("columns", "be two, of speed and coefficient, or three with the pressure", columns)
-        speeds, values, *others = (np.array(one) for one in read_columns(path, columns))
+        speeds, values, *others = read_rising(path, columns)
         try:
             if not others:
-                order = np.argsort(speeds, kind="stable")
-                return cls((speeds[order] * speed_unit).tolist(), values[order].tolist(), static)
+                return cls((speeds * speed_unit).tolist(), values.tolist(), static)
             pressures, order = np.unique(others[0]), np.lexsort([speeds, others[0]])
             whole, count = np.unique(speeds), len(pressures)
             if not np.array_equal(speeds[order], np.tile(whole, count)):
@@ -121,9 +119,7 @@ class TabulatedFriction(FrictionLaw):
     def _check_rising(name: str, values: Any) -> None:
         if len(values) < 2:
             raise ArgumentError(name, "have two values or more", values, got=str(len(values)))
-        for number, (before, after) in enumerate(pairwise(values), start=1):
-            if after <= before:
-                raise ArgumentError(f"{name}[{number}]", f"be above {before!r}, the one before it", after)
+        rising(name, values)
 
     @staticmethod
     def _check_count(name: str, values: Any, other: str, of_other: Any) -> None:

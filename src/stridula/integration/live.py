@@ -191,8 +191,8 @@ class LiveMarch:
         chunk : LiveChunk
             Record, with fewer samples if the march ended early.
         ended : str
-            ``finished``, ``off the track``, ``not finite``, ``contact unsolved`` or ``energy created``; except after
-            the first, the march must be started again with `restart` or `begin`.
+            ``finished``, ``off the track`` or one of `records.endings.FAILED`; except after the first, the march must
+            be started again with `restart` or `begin`.
         """
         now, ratio = self.now, self.ratio
         imposed = now.impositions.on(now.sample * ratio, samples * ratio)

@@ -73,7 +73,8 @@ def simulate(
     Interrupted
         On Ctrl-C, with the record so far.
     Diverged
-        If the result is not valid: the state is not finite, contact forces did not converge, or energy was created. The
+        If the result is not valid: the state is not finite, contact forces did not converge, energy was created, or
+            the step is too long for a nonlinear spring. The
         message has the time, the last state of the contacts and the likely cause; the exception has the record so far.
     """
     asked = settings_of("simulate", settings)
