@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import inspect
 import re
 import tomllib
 from pathlib import Path
@@ -76,3 +77,30 @@ def test_pages_and_help_texts_use_plain_phrases(page):
 @pytest.mark.parametrize("sentence", ["it goes on from there", "Says what linear theory says", "What pushes"])
 def test_the_rule_can_fail(sentence):
     assert any(re.search(riddle, sentence, re.MULTILINE | re.IGNORECASE) for riddle in RIDDLES)
+
+
+def faults_of_layout(text: str) -> list[str]:
+    """Return the complaints of docutils about the layout of a numpydoc docstring."""
+    pytest.importorskip("docutils", reason="the extra docs is not installed")
+    pytest.importorskip("numpydoc", reason="the extra docs is not installed")
+    from docutils.core import publish_doctree
+    from numpydoc.docscrape import NumpyDocString
+
+    quiet = {"report_level": 5, "halt_level": 5}
+    sections = NumpyDocString(text)
+    items = [item for section in ("Parameters", "Attributes", "Returns", "Raises", "Yields") for item in sections[section]]
+    written = ["\n".join(sections["Extended Summary"]), *("\n".join(item.desc) for item in items)]
+    trees = [publish_doctree(part, settings_overrides=quiet) for part in written]
+    messages = [message.astext() for tree in trees for message in tree.parse_messages]
+    return [message for message in messages if "ndent" in message]
+
+
+def test_docstrings_are_laid_out_as_sphinx_reads_them():
+    faults = {name: faults_of_layout(inspect.getdoc(getattr(stridula, name)) or "") for name in stridula.__all__}
+    assert {name: found for name, found in faults.items() if found} == {}
+
+
+def test_a_line_that_is_indented_too_far_is_seen():
+    """Negative control."""
+    text = "Do it.\n\nRaises\n------\nValueError\n    If this or\n        that. The\n    rest."
+    assert faults_of_layout(text)

@@ -74,8 +74,8 @@ def simulate(
         On Ctrl-C, with the record so far.
     Diverged
         If the result is not valid: the state is not finite, contact forces did not converge, energy was created, or
-            the step is too long for a nonlinear spring. The
-        message has the time, the last state of the contacts and the likely cause; the exception has the record so far.
+        the step is too long for a nonlinear spring. The message has the time, the last state of the contacts and the
+        likely cause; the exception has the record so far.
     """
     asked = settings_of("simulate", settings)
     if not isinstance(watchers, Sequence):
