@@ -77,6 +77,8 @@ from .contact import Coulomb as Coulomb
 from .contact import ExponentialWeakening as ExponentialWeakening
 from .contact import FrictionFit as FrictionFit
 from .contact import FrictionLaw as FrictionLaw
+from .contact import FrictionOverTemperature as FrictionOverTemperature
+from .contact import HeatedLayers as HeatedLayers
 from .contact import HertzStiffness as HertzStiffness
 from .contact import LinearStiffness as LinearStiffness
 from .contact import LinearWeakening as LinearWeakening
@@ -90,6 +92,7 @@ from .contact import StaticKinetic as StaticKinetic
 from .contact import Stribeck as Stribeck
 from .contact import SurfaceContact as SurfaceContact
 from .contact import TabulatedFriction as TabulatedFriction
+from .contact import TemperatureHistory as TemperatureHistory
 from .contact import fit_friction as fit_friction
 from .contact import random_field as random_field
 from .cycles import NoCycle as NoCycle

@@ -280,7 +280,7 @@ def _contact_line(name: str, contact: PointContact, *others: PointContact) -> st
     if contact.surface:
         gaps = [one.gap if abs(one.gap) > CLOSED else 0.0 for one in (contact, *others)]
         ends = dict.fromkeys(f"{gap:.3g}" for gap in (min(gaps), max(gaps)))
-        return f"{name:<8} {counted(len(gaps), 'point')}, gap {' to '.join(ends)} m, friction {contact.law}"
+        return f"{name:<8} {counted(len(gaps), 'point')}, gap {' to '.join(ends)} m, {contact.friction_words}"
     kind = f" on {contact.rigid_track.words}" if contact.rigid_track else " against a point"
     if contact.circle is not None:
         kind = f" of a circle of {contact.circle.length:.4g} m"
@@ -288,4 +288,4 @@ def _contact_line(name: str, contact: PointContact, *others: PointContact) -> st
         low, high = contact.path_body.ends
         kind = f" of {high - low:.4g} m"
     lean = f", inclined {math.degrees(contact.inclination):.4g} deg" if contact.inclination else ""
-    return f"{name:<8} at {contact.at:.4g} m{kind}, gap {contact.gap:.3g} m, friction {contact.law}{lean}"
+    return f"{name:<8} at {contact.at:.4g} m{kind}, gap {contact.gap:.3g} m, {contact.friction_words}{lean}"

@@ -78,7 +78,7 @@ def _touched(contact: Any, system: Any) -> str:
     has_places |= rigid is not None and rigid.profile is not None
     where = f" at {contact.at:.4g} m" if has_places else ""
     gap = f", gap {contact.gap:.3g} m" if abs(contact.gap) > CLOSED else ""
-    return f"{system.body_name(contact.tip.body)} on {other}{where}, friction {contact.law}{gap}"
+    return f"{system.body_name(contact.tip.body)} on {other}{where}, {contact.friction_words}{gap}"
 
 
 def _drive_words(drive: Any, system: Any) -> str:

@@ -36,6 +36,7 @@ QUICK = [
     "order-time",
     "order-sliding",
     "fall-on-a-spring",
+    "heated-block",
 ]
 SLOW = [
     "den-hartog",
@@ -50,6 +51,8 @@ SLOW = [
     "lining",
     "friction-damper",
     "cubic-chain",
+    "fading-friction",
+    "heated-slab",
 ]
 TURNS = [(name, seed) for names, count in ((QUICK, 10), (SLOW, 2)) for name in names for seed in range(count)]
 # Where this string sticks, its tangential force passes zero, and its motion across is rounding.

@@ -16,6 +16,7 @@ from .books.recording import (
     record_energies,
     remember_probes,
 )
+from .contacts.heating import set_laws
 from .lanes.compiled import entry, pasted
 from .lanes.operations import INTEGER, TRUTH, Runs, anywhere, choose, everywhere, held, hold, magnitude, placed
 from .layout import columns as at
@@ -33,8 +34,10 @@ from .trying import complete_one, gap_of
 
 @pasted
 def begin(parts: Parts, runs: Runs) -> None:
-    """Save the initial values of the probes."""
+    """Save the initial values of the probes, and let laws act at the temperatures at the start."""
     probes = parts.probes
+    if parts.sizes.layers:
+        set_laws(parts, runs)
     remember_probes(parts.modes.rows, first_probe(parts.sizes), probes.kinds, probes.spans, probes.last, runs)
 
 

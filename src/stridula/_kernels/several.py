@@ -30,6 +30,7 @@ from .contact.tangents import along, held_along, hold_along
 from .contact.yielding import about_indentation, comes_close
 from .contacts.circles import convected
 from .contacts.displacements import own_compliance
+from .contacts.heating import heat_contacts
 from .contacts.profiles import follow_profile
 from .contacts.sweeps import solve_closed
 from .lanes.compiled import inlined, pasted
@@ -129,7 +130,7 @@ def keep_books_in_space(i: int, parts: Parts, n: int, runs: Runs) -> None:
     before = past_along(carried_on, way)
     law, gap = contacts.codes[i], held(now, here + at.NEW_GAP, runs)
     store_in(i, gap, contacts, state, runs)
-    stuck = runs.zero
+    stuck, lost = runs.zero, runs.zero
     if not set_valued(law) or anywhere(status + before.status > 0.5):
         free = free_of_contact(i, parts, forces, runs)
         touch = Touch(normal, along(forces, way), status, held(now, here + at.JAMMED_NOW, runs))
@@ -151,6 +152,7 @@ def keep_books_in_space(i: int, parts: Parts, n: int, runs: Runs) -> None:
         add(contacts.sums, i * at.SUMS + at.TANGENTIALS, runs, forces.a)
         add(contacts.sums, i * at.SUMS + at.TANGENTIALS_B, runs, forces.b)
         hold_along(carried, base + at.LAST_TANGENTIAL, base + at.LAST_TANGENTIAL_B, runs, forces)
+    hold(now, here + at.LOST, runs, lost)
     keep_gap(i, gap, carried, runs)
     keep_slip(carried, base + at.MATERIAL, base + at.LAST_SLIP, base + at.EARLIER_SLIP, slips.a, stuck, runs)
     keep_slip(carried, base + at.MATERIAL_B, base + at.LAST_SLIP_B, base + at.EARLIER_SLIP_B, slips.b, stuck, runs)
@@ -222,3 +224,5 @@ def keep_many(space: bool | None, parts: Parts, n: int, runs: Runs) -> None:
             add(state.energies, at.CONVECTION_WORK, runs, work)
         way = keep_place(i, state.carried, place, runs)
         add(state.energies, at.CONVECTION_WORK, runs, slope * way)
+    if parts.sizes.layers:
+        heat_contacts(parts, runs)

@@ -3,8 +3,10 @@
 from .coulomb import Coulomb, StaticKinetic
 from .fits import FrictionFit, fit_friction
 from .friction_law import FrictionLaw
+from .heating import HEATINGS, HeatedLayers, Heating, TemperatureHistory
 from .laws import LAWS
 from .lugre import LuGre
+from .over_temperature import FrictionOverTemperature
 from .point_contact import PointContact
 from .profile import Profile
 from .random_fields import random_field
@@ -17,6 +19,7 @@ from .tabulated import TabulatedFriction
 from .weakening import ExponentialWeakening, LinearWeakening, Stribeck
 
 __all__ = [
+    "HEATINGS",
     "LAWS",
     "STIFFNESSES",
     "ContactStiffness",
@@ -24,6 +27,9 @@ __all__ = [
     "ExponentialWeakening",
     "FrictionFit",
     "FrictionLaw",
+    "FrictionOverTemperature",
+    "HeatedLayers",
+    "Heating",
     "HertzStiffness",
     "LinearStiffness",
     "LinearWeakening",
@@ -38,6 +44,7 @@ __all__ = [
     "SurfaceContact",
     "SurfacePoints",
     "TabulatedFriction",
+    "TemperatureHistory",
     "fit_friction",
     "random_field",
 ]

@@ -23,6 +23,7 @@ class Coulomb(FrictionLaw):
     """
 
     law: ClassVar[str] = "coulomb"
+    linear_in: ClassVar[tuple[str, ...]] = ("coefficient",)
     depends_on_speed: ClassVar[bool] = False
     coefficient: Coefficient
 
@@ -54,6 +55,7 @@ class StaticKinetic(StaticAndKinetic):
     """
 
     law: ClassVar[str] = "static-kinetic"
+    linear_in: ClassVar[tuple[str, ...]] = ("static", "kinetic")
     depends_on_speed: ClassVar[bool] = False
     static: Coefficient
     kinetic: Coefficient

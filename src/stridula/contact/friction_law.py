@@ -50,6 +50,8 @@ class FrictionLaw(ABC):
         Whether the internal state stays above zero.
     state_is_vector : bool
         Whether the internal state has a component along each tangent in space.
+    linear_in : tuple of str
+        Fields in which its coefficient is linear, so that friction may lie between two laws that differ in these.
     """
 
     law: ClassVar[str] = "own law"
@@ -59,6 +61,7 @@ class FrictionLaw(ABC):
     state_units: ClassVar[str] = ""
     state_is_positive: ClassVar[bool] = False
     state_is_vector: ClassVar[bool] = False
+    linear_in: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         check_declared(self)
@@ -141,6 +144,20 @@ class FrictionLaw(ABC):
     def depends_on_pressure(self) -> bool:
         """Whether friction depends on the pressure."""
         return False
+
+    def at(self, temperature: float) -> FrictionLaw:
+        """Return the law at a temperature [degC]."""
+        return self
+
+    @property
+    def depends_on_temperature(self) -> bool:
+        """Whether friction depends on the temperature."""
+        return False
+
+    @property
+    def at_temperatures(self) -> tuple[tuple[float, FrictionLaw], ...]:
+        """Temperatures at which the law is given [degC], and the law at each; none if it does not depend on them."""
+        return ()
 
     def slope_over_normal(self, velocity: float, normal_force: float) -> float:
         """Return the change of the coefficient with the normal force [1/N], in steady sliding at a velocity [m/s]."""

@@ -6,6 +6,7 @@ from ..checks import instance
 from .coulomb import Coulomb, StaticKinetic
 from .friction_law import FrictionLaw
 from .lugre import LuGre
+from .over_temperature import FrictionOverTemperature
 from .rate_and_state import RateAndState
 from .tabulated import TabulatedFriction
 from .weakening import ExponentialWeakening, LinearWeakening, Stribeck
@@ -19,6 +20,7 @@ LAWS: tuple[type[FrictionLaw], ...] = (
     LuGre,
     RateAndState,
     TabulatedFriction,
+    FrictionOverTemperature,
 )
 
 

@@ -18,6 +18,7 @@ from ..declared import Angle, Distance, Each, Number, OneOrEach, Position, check
 from .coulomb import Coulomb
 from .elastic import ElasticFriction, check_in_series
 from .friction_law import FrictionLaw
+from .heating import Heating, check_heating
 from .laws import check_friction
 from .rigid_track import RigidTrack
 from .stiffness import ContactStiffness, checked_stiffness
@@ -79,6 +80,8 @@ class PointContact:
     area : float, optional
         Area that it represents, as a point of a surface or under friction that depends on the pressure [m²]; unknown
         if left out.
+    heating : HeatedLayers or TemperatureHistory, optional
+        Temperature of the contact, on which its friction may depend: heat of friction in layers, or a given history.
 
     Notes
     -----
@@ -100,6 +103,7 @@ class PointContact:
     tangential_damping: Annotated[float, Number("N s/m", least=0.0)] = 0.0
     surface: str = ""
     area: Annotated[float, Number("m2", least=0.0)] = 0.0
+    heating: Heating | None = None
 
     def __post_init__(self) -> None:
         instance("tip", self.tip, BodyPoint)
@@ -124,6 +128,7 @@ class PointContact:
             raise ArgumentError("area", words, self.area)
         if self.friction.depends_on_pressure and not self.area:
             raise ArgumentError("area", "be given under friction that depends on the pressure", self.area)
+        check_heating(self.heating, self.friction.depends_on_temperature)
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
         if self.tangential_stiffness is not None:
             check_in_series(self.friction, self.tangential_stiffness)
@@ -220,8 +225,28 @@ class PointContact:
 
     @cached_property
     def law(self) -> FrictionLaw:
-        """The law that acts: its friction, in series with its tangential stiffness if it has one."""
+        """The law that acts at the start: its friction, in series with its tangential stiffness if it has one."""
         law = self.friction.on(self.area)
+        return self._with_joint(law if self.heating is None else law.at(float(self.heating.start[0])))
+
+    @property
+    def friction_words(self) -> str:
+        """Its friction at the start and its heating, in words."""
+        return f"friction {self.law}" + ("" if self.heating is None else f", heating {self.heating}")
+
+    @property
+    def layers_of_heat(self) -> tuple[str, int] | None:
+        """Kind of its heating and number of layers, None without a temperature."""
+        return None if self.heating is None else (self.heating.kind, self.heating.layers)
+
+    @property
+    def laws_at_temperatures(self) -> tuple[tuple[float, FrictionLaw], ...]:
+        """Temperatures at which its friction is given [degC], and the law that acts at each; none without any."""
+        found = self.friction.on(self.area).at_temperatures
+        return tuple((temperature, self._with_joint(law)) for temperature, law in found)
+
+    def _with_joint(self, law: FrictionLaw) -> FrictionLaw:
+        """Return a law in series with the tangential stiffness, if there is one."""
         if self.tangential_stiffness is None:
             return law
         return ElasticFriction(law, self.tangential_stiffness, self.tangential_damping)

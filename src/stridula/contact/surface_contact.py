@@ -20,6 +20,7 @@ from ..doubtful import warn_of
 from .coulomb import Coulomb
 from .facing import BEFORE, words_of
 from .friction_law import FrictionLaw
+from .heating import Heating, check_heating
 from .point_contact import PointContact
 from .rigid_track import RigidTrack
 from .stiffness import ContactStiffness, checked_stiffness, per_area
@@ -81,6 +82,9 @@ class SurfaceContact:
         at rest: unlike those of a turning `AxisymmetricBody`, its waves are not carried round.
     wear : sequence of float, optional
         Depth worn off the face at each point [m], which adds to its gap; `worn` computes it from a record.
+    heating : HeatedLayers or TemperatureHistory, optional
+        Temperature of the face, on which its friction may depend: layers of the whole face, which its points share by
+        their areas without heat from one to the next, or a given history.
 
     Raises
     ------
@@ -103,6 +107,7 @@ class SurfaceContact:
     name: str = "surface"
     turning: tuple[Sequence[float], Sequence[float], float] | None = None
     wear: Annotated[Sequence[float], Each(Number("m", least=0.0))] | None = None
+    heating: Heating | None = None
 
     def __post_init__(self) -> None:
         instance("body", self.body, (SolidBody, ReducedBody))
@@ -129,6 +134,7 @@ class SurfaceContact:
         if len(self._laws) != self.areas.size:
             words = f"be one law, or have {self.areas.size}, one for each point"
             raise ArgumentError("friction", words, got=counted(len(self._laws), "law"))
+        check_heating(self.heating, any(law.depends_on_temperature for law in self._laws))
         if self.wear is not None and len(self.wear) != self.areas.size:
             raise ArgumentError("wear", f"have {self.areas.size} depths, one for each point", got=str(len(self.wear)))
         if len(self.contacts) > MANY:
@@ -197,6 +203,7 @@ class SurfaceContact:
                 stiffness=None if self.stiffness is None else per_area(self.stiffness, area),  # type: ignore[arg-type]
                 tangential_stiffness=None if self.tangential_stiffness is None else area * self.tangential_stiffness,
                 tangential_damping=area * self.tangential_damping,
+                heating=None if self.heating is None else self.heating.of_part(area / float(self.areas.sum())),
                 name=f"{self.name} {number + 1}",
                 surface=self.name,
                 area=area,

@@ -14,9 +14,26 @@ from ..arrays import Array
 from ..checks import ArgumentError, rising
 from ..columns import read_rising
 from ..declared import Each, Number, OneOrEach
+from .between import Between
 from .curves import OF_TABLE, Curve, flat_sections, in_pieces
 from .friction_law import CURVE, FrictionLaw
 from .linearised import Linearised
+
+
+def on_grid(speeds: Array, others: Array, values: Array, name: str) -> tuple[list[float], list[float], list[Any]]:
+    """Return rising speeds, rising numbers of another quantity, and a row of values over the speeds for each of these.
+
+    Raises
+    ------
+    ValueError
+        If a speed is not there once at each.
+    """
+    whole, each = np.unique(speeds), np.unique(others)
+    order = np.lexsort([speeds, others])
+    if not np.array_equal(speeds[order], np.tile(whole, each.size)):
+        got = f"{speeds.size} lines for {whole.size} speeds and {each.size} {name}s"
+        raise ArgumentError("table", f"have each speed once at each {name}", got=got)
+    return whole.tolist(), each.tolist(), values[order].reshape(each.size, -1).tolist()
 
 
 @dataclass(frozen=True)
@@ -48,6 +65,7 @@ class TabulatedFriction(FrictionLaw):
     """
 
     law: ClassVar[str] = "tabulated"
+    linear_in: ClassVar[tuple[str, ...]] = ("coefficient", "static")
     velocity: Annotated[Sequence[float], Each(Number("m/s", least=0.0))]
     coefficient: Annotated[Sequence[float] | Sequence[Sequence[float]], Each(OneOrEach(Number(least=0.0)))]
     static: Annotated[float | Sequence[float], OneOrEach(Number(least=0.0))] | None = None
@@ -105,13 +123,8 @@ class TabulatedFriction(FrictionLaw):
         try:
             if not others:
                 return cls((speeds * speed_unit).tolist(), values.tolist(), static)
-            pressures, order = np.unique(others[0]), np.lexsort([speeds, others[0]])
-            whole, count = np.unique(speeds), len(pressures)
-            if not np.array_equal(speeds[order], np.tile(whole, count)):
-                got = f"{speeds.size} lines for {whole.size} speeds and {count} pressures"
-                raise ArgumentError("table", "have each speed once at each pressure", got=got)
-            rows = values[order].reshape(count, -1).tolist()
-            return cls((whole * speed_unit).tolist(), rows, static, (pressures * pressure_unit).tolist())
+            whole, pressures, rows = on_grid(speeds * speed_unit, others[0] * pressure_unit, values, "pressure")
+            return cls(whole, rows, static, pressures)
         except ArgumentError as error:
             raise error.inside(str(path)) from None
 
@@ -245,44 +258,3 @@ class TabulatedFriction(FrictionLaw):
         over = "" if self.pressure is None else f", {len(self.pressure)} pressures up to {self.pressure[-1]:.3g} Pa"
         speeds = f"{len(self.velocity)} speeds up to {self.reach:.3g} m/s"
         return f"tabulated, {min(values):.4g} to {max(values):.4g} at {speeds}{over}"
-
-
-@dataclass(frozen=True)
-class Between(FrictionLaw):
-    """Friction at a pressure between two at which it is given, on a straight line between both.
-
-    Attributes
-    ----------
-    first, last : TabulatedFriction
-        The law at the pressures below and above.
-    share : float
-        Share of the way from the first to the last.
-    """
-
-    law: ClassVar[str] = "tabulated"
-    first: TabulatedFriction
-    last: TabulatedFriction
-    share: float
-
-    def __post_init__(self) -> None:
-        """Leave the checks to the tables."""
-
-    def coefficient_at(self, velocity: Array | float) -> Array:
-        """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]; at 0, the largest at rest."""
-        first, last = (one.coefficient_at(velocity) for one in (self.first, self.last))
-        return np.asarray((1.0 - self.share) * first + self.share * last)
-
-    def linearised_at(self, velocity: float) -> Linearised:
-        """Return the law linearised about steady sliding at `velocity` [m/s], not 0."""
-        slopes = [one.linearised_at(velocity).slope for one in (self.first, self.last)]
-        return Linearised((1.0 - self.share) * slopes[0] + self.share * slopes[1])
-
-    @property
-    def fastest(self) -> float:
-        """Slip speed up to which its friction was measured [m/s]."""
-        return self.first.fastest
-
-    @property
-    def reach(self) -> float:
-        """Slip speed [m/s] up to which its curve is characteristic, for plots."""
-        return self.first.reach

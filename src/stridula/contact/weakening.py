@@ -35,6 +35,7 @@ class Stribeck(StaticAndKinetic):
     """
 
     law: ClassVar[str] = "stribeck"
+    linear_in: ClassVar[tuple[str, ...]] = ("static", "kinetic", "viscous")
     static: Coefficient
     kinetic: Coefficient
     velocity: Speed
@@ -80,6 +81,7 @@ class ExponentialWeakening(StaticAndKinetic):
     """
 
     law: ClassVar[str] = "exponential weakening"
+    linear_in: ClassVar[tuple[str, ...]] = ("static", "kinetic")
     static: Coefficient
     kinetic: Coefficient
     velocity: Speed

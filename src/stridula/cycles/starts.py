@@ -196,6 +196,10 @@ def _check(system: System, flat: Assembly) -> None:
     for number in moving_along(flat, settled_at(flat)):
         name = system.contact_names[number]
         raise ArgumentError("system", "keep its contacts in place", got=f"{name}, which travels along a track")
+    for name, contact in zip(system.contact_names, system.contacts, strict=True):
+        if contact.heating is not None:
+            words = "have contacts without heating, as temperatures do not repeat: take friction.at(temperature)"
+            raise ArgumentError("system", words, got=f"{contact.heating} under {name}")
 
 
 def _settled(drive: Any) -> Any:

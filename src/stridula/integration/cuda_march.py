@@ -64,8 +64,8 @@ class CudaMarch(March):
 
         super().__init__(blocks, states, step, ratio, solve)
         self.cuda, self.threads_per_block = cuda, threads_per_block
-        parts = self.modes, self.paths, self.contacts, self.turning, self.springs, self.carried, self.probes
-        self.there = [self._moved(part) for part in parts]
+        parts = self.modes, self.paths, self.contacts, self.turning, self.springs, self.heating, self.carried
+        self.there = [self._moved(part) for part in (*parts, self.probes)]
 
     def _moved(self, part: Any) -> Any:
         """Return a tuple of arrays on the card."""
@@ -105,8 +105,8 @@ class CudaMarch(March):
         from .._kernels.cuda import marches
 
         imposed, filled = self._moved(imposed), self._moved(records)
-        modes, paths, contacts, turning, springs, carried, probes = self.there
-        fixed = self.layout.sizes, self.timing, modes, paths, contacts, turning, springs
+        modes, paths, contacts, turning, springs, heating, carried, probes = self.there
+        fixed = self.layout.sizes, self.timing, modes, paths, contacts, turning, springs, heating
         parts = Parts(*fixed, carried, imposed, probes, filled)
         grid = -(-self.runs // self.threads_per_block)
         marches[self.kind][grid, self.threads_per_block](self.runs, parts)

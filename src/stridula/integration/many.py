@@ -285,7 +285,10 @@ def _kind(arrays: Arrays, most_modes: int | None) -> Hashable | None:
     flat = arrays.flat
     if most_modes and flat.mode_count + flat.coupled**2 > most_modes:
         return None
-    contacts = tuple((one.bending, one.axial, len(one.fixed), _waves(one), _law(one)) for one in flat.contacts)
+    contacts = tuple(
+        (one.bending, one.axial, len(one.fixed), _waves(one), _law(one), one.contact.layers_of_heat)
+        for one in flat.contacts
+    )
     probes = tuple(type(probe) for probe in arrays.probes), len(flat.probes)
     pushed = len(flat.loads), len(flat.springs.bends)
     return flat.mode_count, flat.coupled, contacts, _turned(flat), pushed, probes

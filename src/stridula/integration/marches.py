@@ -17,6 +17,7 @@ from .._kernels.layout import columns as at
 from .._kernels.layout.parts import (
     Carried,
     Contacts,
+    Heating,
     Imposed,
     Modes,
     Parts,
@@ -33,6 +34,7 @@ from .._kernels.modes.turning import OF_CONTACT
 from ..arrays import Array
 from ..lowering import Assembly
 from ..lowering.blocks import Blocks, ContactBlocks, ProbeBlocks, SpringBlocks
+from ..lowering.heating import HeatBlocks
 from ..lowering.own_laws import of_one_width
 from ..lowering.packing import (
     PLAIN,
@@ -208,6 +210,7 @@ class March:
             columns(aligned(OF_CONTACT * self.contact_count if first.turning else 0, runs)),
         )
         self.springs = self._springs([one.springs for one in blocks])
+        self.heating = self._heating([one.heat for one in blocks])
         numbers = self.contact_count * at.CARRIED, self.contact_count * at.CARRIED, at.ENERGIES
         self.carried = Carried(*(columns(aligned(count, runs)) for count in numbers))
         self.probe_count = len(first.probes.kinds)
@@ -253,6 +256,13 @@ class March:
             columns(aligned(len(springs[0].numbers) * at.SPRING_STATE, self.runs)),
         )
 
+    def _heating(self, heat: Sequence[HeatBlocks]) -> Heating:
+        return Heating(
+            columns(side_by_side([one.numbers.ravel() for one in heat])),
+            columns(aligned(at.LAYERS, self.runs)),
+            np.concatenate(np.stack(of_one_width([one.laws for one in heat]), axis=1)),
+        )
+
     def _probes(self, probes: Sequence[ProbeBlocks]) -> Probes:
         spans = np.zeros((self.probe_count, 2), dtype=np.int64)
         sizes = self.layout.sizes
@@ -276,10 +286,11 @@ class March:
 
     @property
     def is_single(self) -> bool:
-        """Whether there is one contact in the plane, without coupled modes, turning bodies and nonlinear springs."""
+        """Whether there is one contact in the plane, no heating, coupled or turning modes, or nonlinear springs."""
         sizes = self.layout.sizes
         one = sizes.contacts == 1 and not sizes.space
-        return one and not sizes.coupled and not sizes.springs and not len(self.layout.turning)
+        more = sizes.coupled or sizes.springs or sizes.layers or len(self.layout.turning)
+        return one and not more
 
     @property
     def kind(self) -> tuple[bool | None, bool | None, bool | None]:
@@ -368,9 +379,9 @@ class March:
 
     def _march(self, imposed: Imposed, records: Records) -> None:
         """March through a chunk and fill `records`."""
-        parts = self.modes, self.paths, self.contacts, self.turning, self.springs, self.carried, imposed, self.probes
+        parts = self.modes, self.paths, self.contacts, self.turning, self.springs, self.heating, self.carried, imposed
         for place in self.places:
-            march(*self.kind, place, Parts(self.layout.sizes, self.timing, *parts, records))
+            march(*self.kind, place, Parts(self.layout.sizes, self.timing, *parts, self.probes, records))
 
 
 def compilations() -> int:

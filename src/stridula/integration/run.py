@@ -48,6 +48,7 @@ CONTACT_COLUMN = {
     "landings": at.LANDINGS,
     "friction_state": at.LAW_STATE,
     "status": at.DOMINANT,
+    "temperature": at.HOT,
 }
 ENERGY_COLUMN = {
     "kinetic_and_elastic": at.STORED,
@@ -58,6 +59,8 @@ ENERGY_COLUMN = {
     "damping_loss": at.DAMPING_LOSS,
     "contact_sweeps": at.ITERATIONS,
     "unsolved_steps": at.UNSOLVED,
+    "heat": at.HEAT,
+    "stored_heat": at.STORED_HEAT,
 }
 # Columns along both tangents of contacts in space.
 ALONG_BOTH = {
@@ -236,7 +239,7 @@ class Run:
             return ["no contact pressed at any time"]
         if "slip_velocity" not in self.wanted:
             return []
-        return [*self._notes_of_speeds(pressed), *self._notes_of_profiles()]
+        return [*self._notes_of_speeds(pressed), *self._notes_of_temperatures(), *self._notes_of_profiles()]
 
     def _notes_of_speeds(self, pressed: Array) -> list[str]:
         """Return a note on what slid farthest beyond the speeds of its measured friction, faces as a whole."""
@@ -256,6 +259,26 @@ class Run:
             f"{names[farthest]} slid at up to {speeds[farthest]:.3g} m/s, but its friction was measured up to "
             f"{measured[farthest]:.3g} m/s and is taken as constant beyond"
         ]
+
+    def _notes_of_temperatures(self) -> list[str]:
+        """Return a note on the contact farthest outside the temperatures of its measured friction."""
+        numbers = list(range(len(self.system.contacts)) if self.surfaces is None else self.surfaces.shown)
+        names = self.system.contact_names if self.surfaces is None else self.surfaces.names
+        found: list[tuple[float, str]] = []
+        for name, number, own in zip(names, numbers, self.contact_record[at.HOT, :, : self.done], strict=False):
+            given = [temperature for temperature, _ in self.system.contacts[number].friction.at_temperatures]
+            if not given or not own.size:
+                continue
+            for reached, end, beyond in (
+                (own.max(), given[-1], own.max() - given[-1]),
+                (own.min(), given[0], given[0] - own.min()),
+            ):
+                words = (
+                    f"{name} was at {reached:.4g} degC, but its friction was measured from {given[0]:.4g} to "
+                    f"{given[-1]:.4g} degC and is taken as that at {end:.4g} degC beyond"
+                )
+                found += [(float(beyond), words)] if beyond > 0.0 else []
+        return [max(found)[1]] if found else []
 
     def _notes_of_profiles(self) -> list[str]:
         """Return notes on tips that passed the waves of a profile in few steps, or left it."""

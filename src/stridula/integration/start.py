@@ -17,6 +17,7 @@ from ..arrays import Array
 from ..checks import ArgumentError
 from ..lowering import Assembly, ContactRows
 from ..lowering.blocks import Blocks
+from ..lowering.heating import temperatures_at_start
 from ..lowering.schemes import Scheme
 from ..lowering.stepping import Stepping
 from ..records.state import State
@@ -218,6 +219,7 @@ class _Start:
             carried[i, at.STATUS] = STICKING if self.is_closed[i] and self.slip_speeds[i] == 0.0 else SEPARATED
             states = self.arrays.friction_state[i]
             carried[i, FRICTION_STATE] = states if one.contact.has_state_vector else (states[0], 0.0)
+        carried[:, at.TEMPERATURE :] = temperatures_at_start(self.arrays.contacts)
         carried[:, ANCHOR], carried[:, at.LAST_GAP] = carried[:, MATERIAL], self.gaps
         passed = self._slips(first)[:, 0] + self.before[:, at.TIP_MOTION] - self.before[:, at.TRACK_MOTION]
         carried[:, at.LAST_HEIGHT] = self._heights(self.materials)

@@ -13,6 +13,7 @@ from ..checks import instance, positive
 from ..lowering import Assembly, assemble, with_travel
 from ..lowering.blocks import Blocks, blocks_of
 from ..lowering.carry_over import Before
+from ..lowering.heating import temperatures_at_start
 from ..lowering.schemes import Scheme
 from ..lowering.signals import later
 from ..records import Probe
@@ -189,6 +190,7 @@ class _Change:
         for own, before, now in zip(state.carried, was.contacts, self.marched.system.contacts, strict=True):
             if type(now.law) is not type(before.law):
                 own[[at.FRICTION_STATE, at.FRICTION_STATE_B]] = now.law.states_at_start
+        self._keep_warm(state)
         return self._put(arrays, blocks_of(arrays, self.marched.scheme, self.marched.step), state)
 
     def with_other_modes(self, position: Array, velocity: Array) -> UnderWay:
@@ -210,7 +212,17 @@ class _Change:
             motion=later(arrays.motion, now),
         )
         state = state_at_start(starting, marched.scheme, marched.step, blocks, GaussSeidel())
+        state.carried[:, at.TEMPERATURE :] = self.state.carried[:, at.TEMPERATURE :]
+        self._keep_warm(state)
         return self._put(arrays, blocks, state)
+
+    def _keep_warm(self, state: State) -> None:
+        """Set the temperatures of contacts whose layers are others than before to those at a start."""
+        pairs = zip(self.before.marched.system.contacts, self.marched.system.contacts, strict=True)
+        start = temperatures_at_start(self.marched.described.contacts)
+        for own, values, (before, now) in zip(state.carried, start, pairs, strict=True):
+            if before.layers_of_heat != now.layers_of_heat:
+                own[at.TEMPERATURE :] = values
 
     def _root_of(self, arrays: Assembly, step: float) -> float:
         """Return the distance by which an imposed velocity has moved the root of a system so far [m]."""

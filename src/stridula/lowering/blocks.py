@@ -15,6 +15,7 @@ from ..bodies.paths import Path
 from ..checks import ArgumentError, at_most
 from .assembly import Assembly
 from .contact_rows import ContactRows
+from .heating import HeatBlocks, heat_blocks
 from .own_laws import law_of_march, of_one_width
 from .schemes import Scheme
 from .springs import SpringRows
@@ -358,6 +359,8 @@ class Blocks:
         The probes.
     springs : SpringBlocks
         The nonlinear springs.
+    heat : HeatBlocks
+        The temperatures of the contacts.
     turning : tuple of TurningBlocks
         The bodies that turn.
     """
@@ -366,6 +369,7 @@ class Blocks:
     contacts: ContactBlocks
     probes: ProbeBlocks
     springs: SpringBlocks
+    heat: HeatBlocks
     turning: tuple[TurningBlocks, ...] = ()
 
     @cached_property
@@ -400,4 +404,4 @@ def blocks_of(arrays: Assembly, scheme: Scheme, step: float) -> Blocks:
         for one in arrays.turning
     )
     probes, springs = probe_blocks(arrays, step), spring_blocks(arrays.springs, modes)
-    return Blocks(modes, contact_blocks(arrays, modes), probes, springs, turning)
+    return Blocks(modes, contact_blocks(arrays, modes), probes, springs, heat_blocks(arrays.contacts, step), turning)

@@ -107,6 +107,7 @@ def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
         bool((contacts.circles >= 0).any()),
         len(runs[0].springs.pulls),
         max(one.springs.kinks for one in runs),
+        max(one.heat.layers for one in runs),
     )
     along_of, across_of = np.array(places.waves, dtype=np.int64).reshape(-1, 2).T.copy()
     path_of = [-1 if along is None else places.path_spans[_key(along)][0][0] for along in contacts.paths]

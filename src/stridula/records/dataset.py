@@ -17,19 +17,21 @@ from .variables import (
     CONTACT,
     ENERGY,
     FRICTION_STATE,
+    HEAT,
     PROBES,
     SOLVE,
     STATUS,
     STATUS_SHARE,
     STATUS_WORDS,
     TANGENTS,
+    TEMPERATURE,
     attributes_of,
     described,
     status_attributes,
 )
 
 # Variables over time that are the same for all systems.
-OVER_TIME = {variable.name: variable for variable in (*CONTACT, *ENERGY, STATUS_SHARE, *SOLVE)}
+OVER_TIME = {variable.name: variable for variable in (*CONTACT, *ENERGY, STATUS_SHARE, *SOLVE, TEMPERATURE, *HEAT)}
 # All variables over time except the probes.
 RECORDED = (*OVER_TIME, STATUS.name, FRICTION_STATE.name)
 
@@ -142,6 +144,14 @@ def over_time(
             # Laws other than those of bristles also have a single state in space.
             kept[:, [not contact.has_state_vector for contact in contacts], 1] = np.nan
         found[FRICTION_STATE.name] = ((*along, "tangent")[: kept.ndim], kept)
+    cold = [contact.heating is None for contact in contacts]
+    if TEMPERATURE.name in wanted and not all(cold):
+        # NaN for contacts without a temperature.
+        kept = contact_columns[TEMPERATURE.name].T.copy()
+        kept[:, cold] = np.nan
+        found[TEMPERATURE.name] = (along, kept)
+    if any(contact.heating is not None for contact in system.contacts):
+        found |= {one.name: (("time",), energies[one.name]) for one in HEAT if one.name in wanted}
     if len(system.contacts) > 1:
         solved = [one.name for one in SOLVE if one.name in wanted]
         found |= {name: (("time",), energies[name].astype(np.int64)) for name in solved}

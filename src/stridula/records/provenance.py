@@ -17,7 +17,7 @@ from ..bodies.damping import is_damping_law
 from ..bodies.drawn_surfaces import drawn_table
 from ..bodies.turning import Turning
 from ..connections import Connection, ends
-from ..contact import PointContact
+from ..contact import FrictionLaw, PointContact
 from ..drives import Drive
 from ..histories import Constant
 from ..system import System
@@ -144,6 +144,8 @@ def _contact(contact: PointContact) -> dict[str, Any]:
     for name in ("inclination", "name", "normal", "tangent", "surface_velocity", "surface", "area", *joint):
         if getattr(contact, name):
             given[name] = _value(getattr(contact, name))
+    if contact.heating is not None:
+        given["heating"] = {"kind": contact.heating.kind, **_plain(contact.heating)}
     if contact.yields is not None:
         given["stiffness"] = {"kind": contact.yields.kind, **_plain(contact.yields)}
     return {**given, "friction": {"law": contact.friction.law, **_plain(contact.friction)}}
@@ -178,7 +180,8 @@ def _value(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {name: _value(entry) for name, entry in value.items()}
     if is_dataclass(value) and not isinstance(value, type):
-        return ({"form": value.form} if is_damping_law(value) else {}) | _plain(value)
+        tag = {"law": value.law} if isinstance(value, FrictionLaw) else {}
+        return tag | ({"form": value.form} if is_damping_law(value) else {}) | _plain(value)
     if isinstance(value, bool):
         return value
     if isinstance(value, Integral):

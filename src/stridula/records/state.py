@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ..arrays import Array
 
 # Incremented whenever the meaning of a State, or of its record, changes.
-LAYOUT = 5
+LAYOUT = 6
 
 
 @dataclass

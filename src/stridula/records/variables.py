@@ -53,6 +53,11 @@ ALONG_TANGENTS = ("tangential_force", "contact_position", "slip_velocity")
 TANGENTS = ("first", "second")
 # Units depend on the law: m for LuGre's bristles, s for the state of rate and state.
 FRICTION_STATE = Variable("friction_state", "1", "internal state of the law of friction")
+TEMPERATURE = Variable("temperature", "degC", "temperature of the contact")
+HEAT = (
+    Variable("heat", "J", "heat of friction that has gone into the layers since the start"),
+    Variable("stored_heat", "J", "heat stored in the layers since the start; the rest has gone to the surroundings"),
+)
 SOLVE = (
     Variable("contact_sweeps", "1", "largest number of sweeps, or steps of Newton's method, a step", "maximum"),
     Variable("unsolved_steps", "1", "steps in which the contact forces are out of tolerance", "sum"),

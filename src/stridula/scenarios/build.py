@@ -32,7 +32,7 @@ from ..bodies.drawn_surfaces import drawn_of
 from ..bodies.sections import SECTIONS
 from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, listed, suggestion
-from ..contact import LAWS, STIFFNESSES, PointContact, Profile, RigidTrack, SurfaceContact
+from ..contact import HEATINGS, LAWS, STIFFNESSES, PointContact, Profile, RigidTrack, SurfaceContact
 from ..declared import declared
 from ..disk import is_there
 from ..drives import Drive
@@ -54,6 +54,7 @@ HISTORIES: dict[str, Callable[..., Any]] = {history.kind: history for history in
 DRIVES: dict[str, type[Drive]] = {drive.kind: drive for drive in drives.DRIVES}
 PROBES = {probe.quantity: probe for probe in probes.PROBES}
 FRICTIONS: dict[str, Callable[..., Any]] = {law.law: law for law in LAWS}
+HEATED: dict[str, Callable[..., Any]] = {kind.kind: kind for kind in HEATINGS}
 STIFFNESS: dict[str, Callable[..., Any]] = {kind.kind: kind for kind in STIFFNESSES}
 CONNECTIONS: dict[str, Callable[..., Any]] = {connection.kind: connection for connection in connections.CONNECTIONS}
 Tables = dict[str, Any]
@@ -130,10 +131,10 @@ class Builder:
         for body, place in ((slider, "slider"), (track, "track")):
             self.places |= {body.name: (place,)} if body.name else {}
         table = dict(self.tables["contact"])
-        friction = self._friction(("contact",), table) | self._stiffness(("contact",), table)
+        given = self._of_contact(("contact",), table)
         tip = self._point(("contact", "point"), slider, table.pop("point", "tip"))
         with self._within("contact"):
-            return PointContact(tip, track, **friction, **table)
+            return PointContact(tip, track, **given, **table)
 
     def _general(self) -> tuple[list[Any], list[Any]]:
         tables: dict[str, Tables] = self.tables["bodies"]
@@ -276,13 +277,36 @@ class Builder:
         with self._within(*path):
             return ModalPlate(material, **table)
 
+    def _of_contact(self, path: Place, table: Tables) -> dict[str, Any]:
+        """Remove friction, stiffness and heating from the table of a contact, and return them built."""
+        found = (of(path, table) for of in (self._friction, self._stiffness, self._heating))
+        return {name: value for one in found for name, value in one.items()}
+
     def _friction(self, path: Place, table: Tables) -> dict[str, Any]:
         """Remove the friction from the table of a contact, and return it built."""
         given = dict(table.pop("friction", None) or {})
         if not given:
             return {}
         with self._within(*path, "friction"):
+            if given.get("laws"):
+                given["laws"] = [self._law((*path, "friction", "laws", k), one) for k, one in enumerate(given["laws"])]
             return {"friction": made_or_read(FRICTIONS[given.pop("law")], given)}
+        return {}
+
+    def _law(self, path: Place, table: Tables) -> Any:
+        """Return one of several laws of a friction."""
+        with self._within(*path):
+            return made_or_read(FRICTIONS[table["law"]], {key: value for key, value in table.items() if key != "law"})
+        return None
+
+    def _heating(self, path: Place, table: Tables) -> dict[str, Any]:
+        """Remove the heating from the table of a contact, and return it built."""
+        given = table.pop("heating", None)
+        if given is None:
+            return {}
+        with self._within(*path, "heating"):
+            values = {name: value for name, value in given.items() if name != "kind" and value is not None}
+            return {"heating": HEATED[given["kind"]](**values)}
         return {}
 
     def _stiffness(self, path: Place, table: Tables) -> dict[str, Any]:
@@ -297,15 +321,15 @@ class Builder:
 
     def _contact(self, number: int, table: Tables) -> Any:
         path = ("contacts", number)
-        friction = self._friction(path, table) | self._stiffness(path, table)
+        given = self._of_contact(path, table)
         tip = self._place((*path, "tip"), table.pop("tip"))
         track = self._track((*path, "track"), dict(table.pop("track")))
         with self._within(*path):
-            return PointContact(tip, track, **friction, **table)
+            return PointContact(tip, track, **given, **table)
 
     def _surface(self, number: int, table: Tables) -> Any:
         path = ("surfaces", number)
-        given = self._friction(path, table) | self._stiffness(path, table)
+        given = self._of_contact(path, table)
         body = self._body_of_kind((*path, "body"), table.pop("body"), SolidBody.kind)
         track = dict(table.pop("track"))
         kind, face = track["kind"], track.pop("face", "")

@@ -18,7 +18,7 @@ from .tables import Table
 # Type, default (... if required) and description by key.
 Keys = Mapping[str, tuple[Any, Any, str]]
 # Types of fields that descriptions check themselves, by the name of their kind.
-OWN = {"damping": ModalDamping, "plane": Rows}
+OWN = {"damping": ModalDamping, "laws": Any, "plane": Rows}
 
 
 class Derived(Table):

@@ -7,7 +7,17 @@ from inspect import signature
 from typing import TYPE_CHECKING, Any, Literal
 
 from ..connections import CONNECTIONS
-from ..contact import LAWS, STIFFNESSES, Coulomb, PointContact, Profile, RigidTrack, SurfaceContact
+from ..contact import (
+    HEATINGS,
+    LAWS,
+    STIFFNESSES,
+    Coulomb,
+    FrictionOverTemperature,
+    PointContact,
+    Profile,
+    RigidTrack,
+    SurfaceContact,
+)
 from . import fields as is_
 from .derived import Keys, one_of, table_of
 from .schema_drives import History
@@ -29,18 +39,29 @@ def from_file(kind: Any) -> Keys | None:
 
 if TYPE_CHECKING:
     Friction = Any
+    Heating = Any
     Stiffness = Any
     StiffnessOfArea = Any
 else:
-    Friction = one_of(
+    _laws = [
+        table_of(law, "law", law.law, "law of friction", is_usual=law is Coulomb, from_file=from_file(law))
+        for law in LAWS
+        if law is not FrictionOverTemperature
+    ]
+    _at_each = "law of friction at each temperature, all of one kind"
+    _faded = table_of(
+        FrictionOverTemperature,
         "law",
-        (
-            table_of(law, "law", law.law, "law of friction", is_usual=law is Coulomb, from_file=from_file(law))
-            for law in LAWS
-        ),
+        FrictionOverTemperature.law,
+        "law of friction",
+        after={"laws": (list[one_of("law", _laws)] | None, None, _at_each)},
+        from_file=from_file(FrictionOverTemperature),
     )
+    Friction = one_of("law", [*_laws, _faded])
+    Heating = one_of("kind", (table_of(kind, "kind", kind.kind, "layers or history") for kind in HEATINGS))
     _law = one_of("kind", (table_of(kind, "kind", kind.kind, "linear, power law or hertz") for kind in STIFFNESSES))
     Stiffness, StiffnessOfArea = number_or(is_.Stiffness, _law), number_or(is_.StiffnessOfArea, _law)
+HEATS = "temperature of the contact, on which its friction may depend; none if left out"
 OF_AREA = "stiffness of the contact per unit of area: a number [N/m3] or a table, rigid if left out"
 YIELDS = "stiffness of the contact itself: a number [N/m] or a table, rigid if left out"
 
@@ -58,6 +79,8 @@ class PairContact(Table):
     """stiffness along the tangents, in series with the friction [N/m]; rigid if left out"""
     tangential_damping: is_.Viscosity = PointContact.tangential_damping
     """damping beside this stiffness [N s/m]"""
+    heating: Heating | None = None
+    """temperature of the contact, on which its friction may depend; none if left out"""
     point: is_.Point = "tip"
     """point of the slider that touches: tip, root or a position from the tip [m]"""
     name: str = ""
@@ -158,6 +181,7 @@ else:
     _friction = {"friction": (Friction | None, None, "friction between tip and track, none if left out")}
     _friction["surface"] = (str, "", "name of the surface to which the point belongs, which may lift off in part")
     _friction["stiffness"] = (Stiffness | None, None, YIELDS)
+    _friction["heating"] = (Heating | None, None, HEATS)
     _plane = table_of(RigidTrack, "kind", "rigid", "axisymmetric, solid or rigid", title="Plane", after=_moved)
     _faces = {
         "name": (str, ..., "name in records, to which points add their numbers"),
@@ -168,6 +192,7 @@ else:
     _layer = {
         "friction": _friction["friction"],
         "stiffness": (StiffnessOfArea | None, None, OF_AREA),
+        "heating": _friction["heating"],
         "overlay": (
             bool,
             False,

@@ -173,7 +173,7 @@ def keep_books(i: int, free: Free, touch: Touch, moved: Moved, parts: Parts, n: 
     """Do the bookkeeping of contact `i` in step `n`, except for its place; `free` does not tell how it yields."""
     contacts, state, base = parts.contacts, parts.state, i * at.CARRIED
     law, carried = contacts.codes[i], state.carried
-    before, stuck = carried_by(carried, i, runs), runs.zero
+    before, stuck, lost = carried_by(carried, i, runs), runs.zero, runs.zero
     store_in(i, moved.gap, contacts, state, runs)
     if not set_valued(law) or anywhere(touch.status + before.status > 0.5):
         give = held(contacts.now, i * at.IN_STEP + at.GIVE, runs)
@@ -192,6 +192,7 @@ def keep_books(i: int, free: Free, touch: Touch, moved: Moved, parts: Parts, n: 
         lost = keep_forces(i, touch, moved, carried, contacts, closed, runs)
         keep_tangential(i, touch.tangential, carried, contacts.sums, runs)
         add(state.energies, at.FRICTION_LOSS, runs, lost)
+    hold(contacts.now, i * at.IN_STEP + at.LOST, runs, lost)
     keep_gap(i, moved.gap, carried, runs)
     keep_slip(carried, base + at.MATERIAL, base + at.LAST_SLIP, base + at.EARLIER_SLIP, moved.slip, stuck, runs)
 

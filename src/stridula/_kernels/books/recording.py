@@ -88,6 +88,7 @@ def record_contact(i: int, height: Number, parts: Parts, sample: int, runs: Runs
     write(record, sample, at.JAMMED * runs.columns + column, held(sums, tally + at.JAMS, runs))
     write(record, sample, at.LANDINGS * runs.columns + column, held(sums, tally + at.TOUCHDOWNS, runs))
     write(record, sample, at.LAW_STATE * runs.columns + column, held(carried, base + at.FRICTION_STATE, runs))
+    write(record, sample, at.HOT * runs.columns + column, held(carried, base + at.TEMPERATURE, runs))
     # With equal numbers of steps, the later state in the list is recorded.
     stuck, slid = held(sums, tally + at.STUCK_STEPS, runs), held(sums, tally + at.SLID_STEPS, runs)
     apart = steps - stuck - slid

@@ -35,6 +35,7 @@ from ..layout.laws import (
     VELOCITY,
     VISCOUS,
 )
+from .pieces import piece_at
 
 # Normal force that stands for none [N]; share of the limit of friction from which it is reached but for rounding.
 LEAST_FORCE, FULL = 1e-200, 1.0 - 1e-9
@@ -131,13 +132,7 @@ def curve_of_section(law: Law, section: int, speed: Number) -> Numbers:
     """Do `curve_at` for a section."""
     table, row = law.table, law.row
     pieces, order = int(table[row, PIECES]), int(table[row, ORDER])
-    low, high = 0, pieces
-    while high - low > 1:
-        middle = (low + high) // 2
-        if table[row, FIRST_SPEED + middle] <= speed:
-            low = middle
-        else:
-            high = middle
+    low = piece_at(table, row, FIRST_SPEED, pieces, speed)
     begin, end = table[row, FIRST_SPEED + low], table[row, FIRST_SPEED + low + 1]
     farther, per_speed = speed - end, 2.0 / (end - begin)
     # From -1 to 1 over the piece.

@@ -8,7 +8,7 @@ import numba
 from ..lanes.compiled import overloaded, strict
 from ..lanes.operations import choose, lane, spread, with_lane
 from ..lanes.vectors import LANES, VECTOR
-from ..layout.contact_values import Law, Profile
+from ..layout.contact_values import HeatedLaw, Law, Profile
 
 # Stubs lack what types of tuples have.
 types: Any = numba.core.types
@@ -51,7 +51,7 @@ def _written(kind: Any, of_kind: Callable[..., str | None], makers: dict[str, An
 
 def _expanded(arguments: str, kind: Any, of_kind: Callable[..., str | None], *values: str) -> Any:
     """Return a function that does for tuples of a type, written out, what `of_kind` says for what is in them."""
-    names = {one.__name__: one for one in (choose, lane, spread, with_lane, Law, Profile)}
+    names = {one.__name__: one for one in (choose, lane, spread, with_lane, HeatedLaw, Law, Profile)}
     written = _written(kind, of_kind, names, *values)
     return eval(f"lambda {arguments}: {written}", names)
 

@@ -1,6 +1,7 @@
 """Height of the surface of a track under a tip, and the work of a normal force that follows it."""
 
 from ..contact.lanewise import lanewise
+from ..contact.pieces import piece_at
 from ..lanes.compiled import called
 from ..lanes.operations import Array, Number, Runs, add, held, hold
 from ..layout import columns as at
@@ -20,13 +21,7 @@ def height_at(place: Number, profile: Profile) -> Number:
     if table[row, PERIODIC] > 0.0:
         place = first + (place - first) % (last - first)
     place = min(max(place, first), last)
-    low, high = 0, pieces
-    while high - low > 1:
-        middle = (low + high) // 2
-        if table[row, FIRST_PLACE + middle] <= place:
-            low = middle
-        else:
-            high = middle
+    low = piece_at(table, row, FIRST_PLACE, pieces, place)
     along = place - table[row, FIRST_PLACE + low]
     begin = FIRST_PLACE + pieces + 1 + low * ORDER
     height = table[row, begin + ORDER - 1]

@@ -58,7 +58,7 @@ COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, CURVE, IN_SERIES, LUGRE, AG
 # last step, share of the last step in which it was closed if it still is, gap of the step before the last, part of the
 # ratio of the next step's forces that lies before it, share of the last step in which it stuck, gap of the step before
 # the last two; under a profile its height at the last step and at the one before, and slip by the contact forces in the
-# last step.
+# last step; temperatures of its layers, or its temperature and the time of its history.
 (
     MATERIAL,
     ANCHOR,
@@ -87,15 +87,17 @@ COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, CURVE, IN_SERIES, LUGRE, AG
     FRICTION_STATE_B,
     LAST_TANGENTIAL_B,
     PAST_RATIO_B,
-) = range(27)
-CARRIED = 27
+    TEMPERATURE,
+) = range(28)
+LAYERS = 8
+CARRIED = TEMPERATURE + LAYERS
 
 # State of a contact in a step: gap, slip and abscissa, without its forces, then with them; forces, status, whether it
 # jams; while the contacts are solved together whether it may touch, has broken away, has been let go. Additional give
 # for a unit of force, and additional indentation without force. In the system of all contacts: numbers of the equations
 # of its normal and its tangential force, below 0 without one, the ratio of these forces if it slides; forces and status
-# to restore, and the status that it wants. Height of the profile of its
-# track, and slip without any contact force.
+# to restore, and the status that it wants. Height of the profile of its track, slip without any contact force, and
+# loss to friction.
 (
     FREE_GAP,
     FREE_SLIP,
@@ -120,14 +122,15 @@ CARRIED = 27
     STATUS_WANTED,
     HEIGHT,
     TRIED_SLIP,
+    LOST,
     FREE_SLIP_B,
     NEW_SLIP_B,
     TANGENTIAL_NOW_B,
     TANGENTIAL_EQUATION_B,
     RATIO_B,
     TANGENTIAL_KEPT_B,
-) = range(29)
-IN_STEP = 29
+) = range(30)
+IN_STEP = 30
 
 # Sums of each contact over the steps of a sample, and its place at the beginning of the sample.
 (
@@ -146,7 +149,8 @@ IN_STEP = 29
 SUMS = 11
 
 # Columns of the energy record, one row a sample; all but the stored energy are carried from step to step. That of
-# nonlinear springs is the work against their pull, and part of the stored energy.
+# nonlinear springs is the work against their pull, and part of the stored energy. The last are heat of friction that
+# went into layers, and the part of it that is stored there.
 (
     STORED,
     DRIVE_WORK,
@@ -157,8 +161,10 @@ SUMS = 11
     ITERATIONS,
     UNSOLVED,
     STORED_IN_SPRINGS,
-) = range(9)
-ENERGIES = 9
+    HEAT,
+    STORED_HEAT,
+) = range(11)
+ENERGIES = 11
 
 # Columns of the record of a contact, one row a sample: shares of the time, and the status of the most steps last.
 (
@@ -175,12 +181,13 @@ ENERGIES = 9
     LANDINGS,
     LAW_STATE,
     DOMINANT,
+    HOT,
     TANGENTIAL_FORCE_B,
     CONTACT_POSITION_B,
     SLIP_VELOCITY_B,
     LAW_STATE_B,
-) = range(17)
-COLUMNS = 17
+) = range(18)
+COLUMNS = 18
 
 # Kinds of probe rows: on positions, on centred velocities, on second differences.
 DISPLACEMENT, VELOCITY, ACCELERATION = range(3)
@@ -192,6 +199,12 @@ FINISHED, OFF_TRACK, NOT_FINITE, CONTACT_UNSOLVED, ENERGY_CREATED, TOO_STIFF = r
 # sawtooth under a unit force; then a group for each kink: its place, the change of the stiffness above it and below it.
 CONSTANT_PULL, LINEAR, CUBIC, SPRING_REACH = range(4)
 OF_SPRING, OF_KINK = 4, 3
+# Numbers of the heating of a contact: share of its loss to friction that heats it; temperatures of its layers after a
+# step [degC] for those before, for a loss [degC/J], and without both; heat capacities [J/K].
+HEAT_SHARE, PER_LAYER = 0, 1
+PER_LOSS = PER_LAYER + LAYERS * LAYERS
+WITHOUT_LOSS, CAPACITY = PER_LOSS + LAYERS, PER_LOSS + 2 * LAYERS
+OF_HEATING = CAPACITY + LAYERS
 # State of a nonlinear spring: its pull in this step, and its stretch half a step before it.
 PULL, STRETCH = range(2)
 SPRING_STATE = 2

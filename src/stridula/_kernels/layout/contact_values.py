@@ -75,6 +75,15 @@ class Profile(NamedTuple):
     row: int
 
 
+class HeatedLaw(NamedTuple):
+    """The law of a contact at some temperatures, and its temperature over time: tables of those of all contacts, the
+    table of the laws that act, and its row; see `heated_laws`."""
+
+    given: Array
+    acting: Array
+    row: int
+
+
 class Free(NamedTuple):
     """Motion of a contact in a step without its own forces, and what these change.
 

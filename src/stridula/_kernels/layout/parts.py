@@ -28,6 +28,8 @@ class Sizes(NamedTuple):
         Whether any contact has two tangents.
     circles : bool
         Whether any contact moves round a body, along a circle.
+    layers : int
+        Largest number of heated layers of a contact, 0 without temperatures.
     """
 
     blocks: int
@@ -43,6 +45,7 @@ class Sizes(NamedTuple):
     circles: bool = False
     springs: int = 0
     kinks: int = 0
+    layers: int = 0
 
 
 class Timing(NamedTuple):
@@ -183,6 +186,22 @@ class Springs(NamedTuple):
     now: np.ndarray
 
 
+class Heating(NamedTuple):
+    """Temperatures of contacts, see `heating`.
+
+    Attributes
+    ----------
+    numbers, now : ndarray, a column a run
+        Numbers of each contact, and temperatures of its layers after a step.
+    laws : ndarray, shape (contacts runs, numbers)
+        Laws of friction at some temperatures, and histories of temperature, see `heated_laws`.
+    """
+
+    numbers: np.ndarray
+    now: np.ndarray
+    laws: np.ndarray
+
+
 class Probes(NamedTuple):
     """Kinds and blocks of probes, shares of signals and contact forces; values at the last step, and additions of
     turning to the last change and to the next."""
@@ -214,6 +233,7 @@ class Parts(NamedTuple):
     contacts: Contacts
     turning: Turning
     springs: Springs
+    heating: Heating
     state: Carried
     imposed: Imposed
     probes: Probes

@@ -1,0 +1,89 @@
+"""Temperature of contacts: heat of friction in layers, or a given history; the law of friction follows it."""
+
+from ..contact.lanewise import lanewise
+from ..lanes.compiled import called
+from ..lanes.operations import Number, Runs, add, held, hold
+from ..layout import columns as at
+from ..layout.contact_values import HeatedLaw
+from ..layout.heated_laws import AT, FIRST_TEMPERATURE, TIMES, WIDTH
+from ..layout.laws import STATIC
+from ..layout.parts import Parts
+
+
+@lanewise(0.0)
+def temperature_at(first: Number, time: Number, law: HeatedLaw) -> Number:
+    """Return the temperature of a contact: of its first layer, or that of its history at a time."""
+    given, row = law.given, law.row
+    count = int(given[row, TIMES])
+    if count == 0:
+        return first
+    times = FIRST_TEMPERATURE + int(given[row, AT]) * (1 + int(given[row, WIDTH]))
+    temperatures = times + count
+    if time <= given[row, times]:
+        return given[row, temperatures]
+    for k in range(1, count):
+        begin, end = given[row, times + k - 1], given[row, times + k]
+        if time < end:
+            rise = given[row, temperatures + k] - given[row, temperatures + k - 1]
+            return given[row, temperatures + k - 1] + (time - begin) / (end - begin) * rise
+    return given[row, temperatures + count - 1]
+
+
+@lanewise(0.0)
+def act_at(temperature: Number, law: HeatedLaw) -> Number:
+    """Let the law at a temperature act; return the ratio at rest.
+
+    Between two temperatures at which it is given its parameters lie on straight lines; before the first and beyond the
+    last they are constant.
+    """
+    given, acting, row = law.given, law.acting, law.row
+    count, width = int(given[row, AT]), int(given[row, WIDTH])
+    if count == 0:
+        return acting[row, STATIC]
+    below, share = 0, 0.0
+    for k in range(count - 1):
+        low, high = given[row, FIRST_TEMPERATURE + k], given[row, FIRST_TEMPERATURE + k + 1]
+        if temperature > low:
+            below, share = k, min((temperature - low) / (high - low), 1.0)
+    first = FIRST_TEMPERATURE + count + below * width
+    after = first + width if count > 1 else first
+    for k in range(width):
+        # Numbers that do not depend on the temperature, such as those of pieces, stay exact.
+        acting[row, k] = given[row, first + k] + share * (given[row, after + k] - given[row, first + k])
+    return acting[row, STATIC]
+
+
+@called
+def set_laws(parts: Parts, runs: Runs) -> None:
+    """Let the laws of all contacts act at their temperatures, those at the instant of their next forces."""
+    carried, contacts = parts.state.carried, parts.contacts
+    for i in range(parts.sizes.contacts):
+        law = HeatedLaw(parts.heating.laws, contacts.laws, i * runs.columns + runs.first)
+        ratio = act_at(held(carried, i * at.CARRIED + at.TEMPERATURE, runs), law)
+        hold(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, runs, ratio)
+
+
+@called
+def heat_contacts(parts: Parts, runs: Runs) -> None:
+    """Heat all contacts by what they lost to friction in a step, and set their laws for the next."""
+    carried, energies, layers = parts.state.carried, parts.state.energies, parts.sizes.layers
+    numbers, now = parts.heating.numbers, parts.heating.now
+    for i in range(parts.sizes.contacts):
+        own, base = i * at.OF_HEATING, i * at.CARRIED + at.TEMPERATURE
+        heat = held(parts.contacts.now, i * at.IN_STEP + at.LOST, runs) * held(numbers, own + at.HEAT_SHARE, runs)
+        for j in range(layers):
+            warmed = held(numbers, own + at.WITHOUT_LOSS + j, runs)
+            warmed += held(numbers, own + at.PER_LOSS + j, runs) * heat
+            for k in range(layers):
+                row = own + at.PER_LAYER + j * at.LAYERS + k
+                warmed += held(numbers, row, runs) * held(carried, base + k, runs)
+            hold(now, j, runs, warmed)
+        add(energies, at.HEAT, runs, heat)
+        for j in range(layers):
+            rise = held(now, j, runs) - held(carried, base + j, runs)
+            add(energies, at.STORED_HEAT, runs, held(numbers, own + at.CAPACITY + j, runs) * rise)
+            hold(carried, base + j, runs, held(now, j, runs))
+        if layers > 1:
+            law = HeatedLaw(parts.heating.laws, parts.contacts.laws, i * runs.columns + runs.first)
+            hold(carried, base, runs, temperature_at(held(carried, base, runs), held(carried, base + 1, runs), law))
+    set_laws(parts, runs)
