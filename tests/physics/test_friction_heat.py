@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stridula as st
+from stridula.integration.live import LiveMarch
 
 AREA = 2e-4
 
@@ -269,6 +270,56 @@ def test_a_face_shares_its_layers_by_the_areas_of_its_points():
     for one in parts:
         np.testing.assert_allclose(one.rates[0], layers.rates[0])
         np.testing.assert_allclose(one.rates[1], layers.rates[1])
+
+
+def test_a_face_warms_where_it_rubs():
+    """A block pressed aside on a belt: each point by its own force, in a map; the face, in all, by the whole loss."""
+    material = st.Material(young=1e9, density=2000.0, poisson=0.3)
+    pad = st.SolidBody.block(
+        (0.06, 0.02, 0.03), (3, 1, 2), material, cutoff=1e4, damping=0.2, contact_faces=["bottom"], name="pad"
+    )
+    held = [st.Spring(pad.at((0.0, 0.01, side)), stiffness=1e6, direction=way) for side in (0.0, 0.03) for way in "xz"]
+    law = st.FrictionOverTemperature([20.0, 120.0], [st.Coulomb(0.5), st.Coulomb(0.3)])
+    layers = st.HeatedLayers(0.05, share=0.8)
+    face = st.SurfaceContact(
+        pad, "bottom", st.RigidTrack(velocity=2.0), friction=law, stiffness=2e11, heating=layers, name="lining"
+    )
+    system = st.System([face], [st.Force(pad.at("top"), y=-500.0), st.InitialEquilibrium()], held)
+    run = st.simulate(system, 5e-3, surface_rate=1000.0)
+    points = st.simulate(system, 5e-3, surface_rate="all")
+    temperature, pressed = points["temperature"].values, points["normal_force"].values
+    expected = np.interp(temperature, [20.0, 120.0], [0.5, 0.3]) * pressed
+    pulled = np.linalg.norm(points["tangential_force"].values, axis=-1)
+    np.testing.assert_allclose(pulled[5:], expected[5:], rtol=2e-3)
+    assert np.ptp(temperature[-1]) > 1.0
+    shares = face.areas / face.areas.sum()
+    stored = 0.05 * (shares * (temperature[-1] - 20.0)).sum()
+    assert float(run["heat"][-1]) == pytest.approx(0.8 * float(run["friction_loss"][-1]), rel=1e-9)
+    assert stored == pytest.approx(float(run["heat"][-1]), rel=1e-9)
+    np.testing.assert_allclose(run["temperature"][-1], temperature[-1].mean(), rtol=1e-9)
+    np.testing.assert_allclose(
+        run["map_temperature"][-1], temperature[-len(temperature) // 5 :].mean(axis=0), rtol=1e-3
+    )
+    again = st.load_scenario(points).simulate()
+    np.testing.assert_array_equal(again["temperature"], points["temperature"])
+
+
+def test_a_played_contact_stays_warm_when_its_friction_changes():
+    """With other friction, with other bodies, and cold again under other layers."""
+    law = st.FrictionOverTemperature([20.0, 60.0], [st.Coulomb(0.5), st.Coulomb(0.3)])
+    given = 1.0, 900.0, 50.0, 0.5
+    system = on_a_belt(law, st.HeatedLayers(0.05), *given)
+    for other, is_warm in (
+        (on_a_belt(law, st.HeatedLayers(0.1), *given), True),
+        (on_a_belt(law, st.HeatedLayers([0.2, 0.2], 1.0), *given), False),
+    ):
+        live = LiveMarch(system, (), sample_rate=1000.0)
+        warm = float(live.advance(200)[0].contact["temperature"][-1])
+        assert warm > 30.0
+        assert live.change(other, ())
+        after = float(live.advance(1)[0].contact["temperature"][-1])
+        assert (abs(after - warm) < 2.0) == is_warm
+        assert is_warm or after < 25.0
 
 
 def test_cycles_refuse_temperatures():

@@ -245,6 +245,7 @@ def _surface(record: xr.Dataset) -> dict[str, str]:
         "regime": _regime(record),
         "normal force": _force(record["normal_force"].values.sum(axis=1)),
         "status": _status(mean_shares(record["status_share"].values, carried)),
+        **_warmth(record),
     }
 
 
@@ -263,8 +264,19 @@ def _one_contact(record: xr.Dataset) -> dict[str, str]:
         **_tones(record),
         "status": _status(shares),
         "tip": f"from {_place(place[0])} to {_place(place[-1])} along the track",
+        **_warmth(record),
     }
     return lines | ({"jammed": f"{counted(jammed, 'step')} in which sliding would have jammed"} if jammed else {})
+
+
+def _warmth(record: xr.Dataset) -> dict[str, str]:
+    """Return the temperature of a contact, or the range of those of a surface, at the beginning and at the end."""
+    if "temperature" not in record or record["temperature"].isnull().all():
+        return {}
+    values = record["temperature"].values.reshape(record.sizes["time"], -1)
+    ends = (dict.fromkeys(f"{one:.4g}" for one in (np.nanmin(values[k]), np.nanmax(values[k]))) for k in (0, -1))
+    first, last = (" to ".join(one) for one in ends)
+    return {"temperature": f"{first} degC at the beginning, {last} degC at the end"}
 
 
 def _place(place: Array) -> str:

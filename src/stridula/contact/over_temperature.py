@@ -129,7 +129,7 @@ class FrictionOverTemperature(FrictionLaw):
     def at(self, temperature: float) -> FrictionLaw:
         """Return the law at a temperature [degC]."""
         below = int(np.searchsorted(self.temperature, temperature, side="right")) - 1
-        if below < 0 or below == len(self.temperature) - 1:
+        if below < 0 or below == len(self.temperature) - 1 or temperature == self.temperature[below]:
             return self.laws[max(below, 0)]
         first, last = self.temperature[below : below + 2]
         return Between(self.laws[below], self.laws[below + 1], (temperature - first) / (last - first))
@@ -178,4 +178,4 @@ class FrictionOverTemperature(FrictionLaw):
 
     def __str__(self) -> str:
         ends = f"{self.temperature[0]:.4g} to {self.temperature[-1]:.4g} degC"
-        return f"{counted(len(self.laws), 'law')} from {ends}, {self.laws[0]} to {self.laws[-1]}"
+        return f"{self.laws[0]} to {self.laws[-1]} at {counted(len(self.laws), 'temperature')} from {ends}"

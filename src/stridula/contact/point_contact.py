@@ -231,8 +231,9 @@ class PointContact:
 
     @property
     def friction_words(self) -> str:
-        """Its friction at the start and its heating, in words."""
-        return f"friction {self.law}" + ("" if self.heating is None else f", heating {self.heating}")
+        """Its friction, with its tangential stiffness, and its heating, in words."""
+        law = self._with_joint(self.friction.on(self.area))
+        return f"friction {law}" + ("" if self.heating is None else f", heating {self.heating}")
 
     @property
     def layers_of_heat(self) -> tuple[str, int] | None:

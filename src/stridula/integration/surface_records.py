@@ -12,7 +12,15 @@ from ..arrays import Array
 from ..records.by_surface import groups
 from ..records.dataset import OVER_TIME
 from ..records.resultants import AXES, RESULTANTS, resultants
-from ..records.variables import STATUS, STATUS_SHARE, attributes_of, described, dominant_status, status_attributes
+from ..records.variables import (
+    STATUS,
+    STATUS_SHARE,
+    TEMPERATURE,
+    attributes_of,
+    described,
+    dominant_status,
+    status_attributes,
+)
 from ..system import System
 from .point_records import PointRecord
 
@@ -20,7 +28,7 @@ from .point_records import PointRecord
 SUMMED = (at.NORMAL_FORCE, at.TANGENTIAL_FORCE, at.TANGENTIAL_FORCE_B, at.JAMMED, at.LANDINGS)
 SLIPS = [at.SLIP_VELOCITY, at.SLIP_VELOCITY_B]
 SHARES = slice(at.SEPARATED, at.SLIDING + 1)
-# Variables of maps, means over an interval.
+# Variables of maps, means over an interval; that of the temperature where a contact is heated.
 MAPPED = ("normal_force", "tangential_force", "slip_velocity", STATUS_SHARE.name, STATUS.name)
 MAP = "map_"
 # Value in place of a rate of maps to record all points of surfaces as contacts.
@@ -50,6 +58,8 @@ class SurfaceRecord:
         self._surfaces = [system.surface_names[number] for number in self._points]
         self._point_names = [system.contact_names[number] for number in self._points]
         self._faces = system.faces
+        is_heated = any(contact.heating is not None for contact in system.contacts)
+        self._mapped = (*MAPPED, TEMPERATURE.name) if is_heated else MAPPED
         numbers = {name: number for number, name in enumerate(system.contact_names)}
         self._of_face = [[numbers[point.name] for point in face.contacts] for face in self._faces]
         self._resultants: list[list[dict[str, Array]]] = [[] for _ in self._faces]
@@ -85,8 +95,9 @@ class SurfaceRecord:
         whole = len(waiting) // self.every
         for interval in waiting[: whole * self.every].reshape(whole, self.every, *waiting.shape[1:]):
             normal, tangential, slip, share = (one.mean(axis=0) for one in self._of_points(interval, self._points))
-            found = (normal, tangential, slip, share, dominant_status(share))
-            self._maps.append(dict(zip(MAPPED, found, strict=True)))
+            temperature = interval[:, self._points, at.HOT].mean(axis=0)
+            found = (normal, tangential, slip, share, dominant_status(share), temperature)
+            self._maps.append(dict(zip(self._mapped, found, strict=False)))
         self._waiting = waiting[whole * self.every :].copy()
 
     def add_to(self, record: xr.Dataset, start: float, interval: float) -> xr.Dataset:
@@ -97,7 +108,7 @@ class SurfaceRecord:
         times = start + interval * self.every * np.arange(1, len(self._maps) + 1)
         beyond = {"tangential_force": "tangent", "slip_velocity": "tangent", STATUS_SHARE.name: "contact_status"}
         data: dict[str, Any] = {}
-        for name in MAPPED:
+        for name in self._mapped:
             after = (beyond[name],) if name in beyond else ()
             empty = np.empty((0, len(self._points), *(record.sizes[one] for one in after)))
             values = np.stack([one[name] for one in self._maps]) if self._maps else empty

@@ -47,7 +47,7 @@ def friction(law: FrictionLaw, velocities: Array | Sequence[float] | None = None
     figure = Figure(figsize=(6.4, 4.2), layout="constrained", dpi=120)
     axes = figure.subplots()
     shades = np.linspace(1.0, 0.3, len(law.sections))
-    for one, shade, words in zip(law.sections, shades, _pressures(law), strict=True):
+    for one, shade, words in zip(law.sections, shades, _conditions(law), strict=True):
         for side in (chosen[chosen < 0.0], chosen[chosen > 0.0]):
             label = words if side.size and side[-1] == chosen[-1] else None
             values = np.sign(side) * one.coefficient_at(side)
@@ -65,8 +65,14 @@ def friction(law: FrictionLaw, velocities: Array | Sequence[float] | None = None
     return figure
 
 
-def _pressures(law: FrictionLaw) -> list[str | None]:
-    """Return the pressure of each section of a law in words, none without pressures."""
+def _conditions(law: FrictionLaw) -> list[str | None]:
+    """Return temperature and pressure of each section of a law in words, none without either."""
+    if law.at_temperatures:
+        return [
+            f"{temperature:.4g} degC" + ("" if words is None else f", {words}")
+            for temperature, one in law.at_temperatures
+            for words in _conditions(one)
+        ]
     given = getattr(law, "pressure", None)
     return [None] if given is None else [f"{one:.3g} Pa" for one in given]
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
-from .variables import CONTACT, FRICTION_STATE, STATUS, STATUS_SHARE
+from .variables import CONTACT, FRICTION_STATE, STATUS, STATUS_SHARE, TEMPERATURE
 
 # Variables of the points of surfaces recorded at every sample, besides those of the surfaces themselves.
 OF_POINTS = ("normal_force", "tangential_force", STATUS_SHARE.name, "landings")
@@ -17,7 +17,13 @@ POINT = "point_"
 WHOLE = 255
 # Shares that differ from 0 or 1 by less are due to rounding.
 ROUND_OFF = 1e-9
-OF_CONTACTS = (*(variable.name for variable in CONTACT), STATUS.name, STATUS_SHARE.name, FRICTION_STATE.name)
+OF_CONTACTS = (
+    *(variable.name for variable in CONTACT),
+    STATUS.name,
+    STATUS_SHARE.name,
+    FRICTION_STATE.name,
+    TEMPERATURE.name,
+)
 
 
 def counted(share: Array) -> Array:

@@ -279,8 +279,12 @@ class Builder:
 
     def _of_contact(self, path: Place, table: Tables) -> dict[str, Any]:
         """Remove friction, stiffness and heating from the table of a contact, and return them built."""
-        found = (of(path, table) for of in (self._friction, self._stiffness, self._heating))
-        return {name: value for one in found for name, value in one.items()}
+        heated = table.get("heating") is not None
+        found = self._friction(path, table) | self._stiffness(path, table) | self._heating(path, table)
+        if heated and "heating" not in found:
+            # Friction would ask for the heating, whose problem is known.
+            found.pop("friction", None)
+        return found
 
     def _friction(self, path: Place, table: Tables) -> dict[str, Any]:
         """Remove the friction from the table of a contact, and return it built."""

@@ -96,8 +96,9 @@ def face_of_slab(time: Array, flux: float) -> Array:
 
 def heated_slab() -> Outcome:
     """The face of a slab that rubs, in eight layers: heat equation under a constant flux."""
-    material = {"thickness": THICKNESS, "conductivity": CONDUCTS, "density": DENSITY, "specific_heat": HEAT}
-    layers = HeatedLayers.slab(AREA, **material, share=1.0)
+    layers = HeatedLayers.slab(
+        AREA, thickness=THICKNESS, conductivity=CONDUCTS, density=DENSITY, specific_heat=HEAT, share=1.0
+    )
     load, speed = 100.0, 1.0
     flux = MU * load * speed / AREA
     rows, curves = list[Row](), list[Curve]()
