@@ -22,6 +22,7 @@ COLUMNS = {
     "convection_work": ("convection", 1e-6),
     "damping_loss": ("damping", 1e-8),
     "friction_state": ("state", 1e-8),
+    "temperature": ("temperature", 1e-9),
 }
 ENERGIES = ("contact_work", "friction_loss", "convection_work", "damping_loss")
 

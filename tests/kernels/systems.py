@@ -30,6 +30,19 @@ def jointed(system: st.System, stiffness: float, damping: float = 0.0) -> st.Sys
     return replace(system, contact=contacts)
 
 
+def heated(system: st.System, layers: dict[int, st.HeatedLayers | st.TemperatureHistory]) -> st.System:
+    """The same with layers, or a history, under some contacts, whose friction fades from 20 to 60 degC to a half."""
+
+    def half(law):
+        return replace(law, **{name: 0.5 * getattr(law, name) for name in vars(law)})
+
+    contacts = list(system.contacts)
+    for number, heating in layers.items():
+        law = st.FrictionOverTemperature([20.0, 60.0], [contacts[number].friction, half(contacts[number].friction)])
+        contacts[number] = replace(contacts[number], friction=law, heating=heating)
+    return replace(system, contact=contacts)
+
+
 def chain() -> st.System:
     """Two masses in a row, coupled by springs and a dashpot, each on the belt with its own law."""
     one, two = st.PointMass(0.3, "one"), st.PointMass(0.5, "two")
@@ -263,6 +276,17 @@ SYSTEMS = {
     "mass on a belt, slip law": (
         lambda: oscillator(st.RateAndState(0.5, 0.015, 0.01, 1e-4, 1e-3, "slip", 0.3), inclination=-0.2),
         2e-4,
+    ),
+    "mass on a belt, fading": (
+        lambda: heated(oscillator(st.StaticKinetic(0.6, 0.4)), {0: st.HeatedLayers([2e-4, 3e-4], 1e-3, 2e-3)}),
+        2e-4,
+    ),
+    "pad on a belt, fading": (
+        lambda: heated(
+            pad_on(SHAKEN, [st.Coulomb(0.4), WEAK, st.StaticKinetic(0.5, 0.3)]),
+            {0: st.TemperatureHistory([0.0, 0.05], [20.0, 50.0]), 2: st.HeatedLayers(1e-3, share=1.0)},
+        ),
+        1e-4,
     ),
     "mass on a belt, joint": (lambda: jointed(oscillator(st.Coulomb(0.6)), 1e4), 2e-4),
     "mass on a belt, damped joint": (lambda: jointed(oscillator(WEAK), 2e4, 3.0), 2e-4),

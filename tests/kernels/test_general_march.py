@@ -79,6 +79,10 @@ def slightly(change, system):
         profile = contacts[0].track.profile
         higher = replace(profile, height=(1 + 1e-3) * np.array(profile.height))
         contacts[0] = replace(contacts[0], track=replace(contacts[0].track, profile=higher))
+    elif change == "capacity":
+        layers = contacts[0].heating
+        larger = replace(layers, capacity=(1 + 1e-4) * np.array(layers.capacity))
+        contacts[0] = replace(contacts[0], heating=larger)
     elif change == "inclination":
         contacts[0] = replace(contacts[0], inclination=contacts[0].inclination * (1 + 1e-5))
     elif change == "direction of the line":
@@ -107,6 +111,7 @@ def slightly(change, system):
         ("velocity of the belt", "mass on a belt, static and kinetic"),
         ("height of the surface", "mass on a rough belt"),
         ("height of the surface", "mass thrown over a dip"),
+        ("capacity", "mass on a belt, fading"),
         ("inclination", "inclined plane"),
         ("inclination", "groove"),
         ("dashpot left out", "beam on a spring"),

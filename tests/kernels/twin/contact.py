@@ -9,6 +9,7 @@ from scipy.interpolate import CubicSpline
 
 import stridula as st
 
+from .heat import Heat
 from .laws import ElasticFriction, curve, has_state, ratio_with_state, state_after, state_of_new
 from .way import SEPARATED, SLIDING, STICKING, Before, Free
 
@@ -41,6 +42,7 @@ class Contact:
         self.other = bodies.trace(contact.track) if frozen else np.zeros((2, bodies.size))
         self.apart = bodies.trace(contact.tip) - self.other
         self.surface, self.pushed = surface_of(contact.track), 0.0
+        self.heat = Heat(contact)
         self.above = contact.gap + self.surface(contact.at)
 
     # Steps 2 and 3.

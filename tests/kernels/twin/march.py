@@ -43,7 +43,9 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         q_new = trial + load @ push
 
         ledger.add(contacts, touches, (force, pull, push), (q_before, q, q_new), n)
+        lost = [loss_of(one, touch, q_new) for one, touch in zip(contacts, touches, strict=True)]
         kept.append({"solutions": len(found), **books(contacts, touches, free, q_new), **vars(ledger.sums)})
+        kept[-1]["temperature"] = warmed(contacts, lost, h)
         q_before, q = q, q_new
     trail = SimpleNamespace(**{name: np.array([one[name] for one in kept]) for name in kept[0]})
     trail.last = q_before, q
@@ -118,6 +120,20 @@ def books(contacts, touches, free, q):
     }
 
 
+def loss_of(one, touch, q_new):
+    """Loss of a contact to friction in a step, before it is carried on [J]."""
+    work = touch.tangential * one.slip(touch, q_new)
+    return work if has_state(one.before.law) else abs(work)
+
+
+def warmed(contacts, lost, h):
+    """Heat the contacts by their losses and return their temperatures, at which their laws act from now on."""
+    for one, loss in zip(contacts, lost, strict=True):
+        one.heat.warm(loss, h)
+        one.before.law = one.heat.law(one.before.law)
+    return [one.heat.layers[0] for one in contacts]
+
+
 class Ledger:
     """Works since the start, losses, and the energy stored at the last step [J]."""
 
@@ -138,8 +154,7 @@ class Ledger:
             frame = touch.tangential * (tip - track) - touch.normal * lift
             sums.drive += frame
             sums.contact -= frame
-            work = touch.tangential * one.slip(touch, q_new)
-            sums.friction += work if has_state(one.before.law) else abs(work)
+            sums.friction += loss_of(one, touch, q_new)
             slope = (touch.normal * one.traces.slopes[1] - touch.tangential * one.traces.slopes[0]) @ q_new
             sums.convection += slope * (one.place(q_new) - one.place_before) / 2
             sums.convection += touch.normal * (one.rise - one.rise_before) / 2
