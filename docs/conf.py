@@ -398,9 +398,10 @@ def check_measures() -> None:
 
 
 def copy_examples() -> None:
-    """Copy the scripts of the galleries with their headers and decks, and forget those that are no more."""
+    """Copy the scripts of the galleries with their headers, decks and tables, and forget those that are no more."""
     for name, folder in GALLERIES.items():
-        sources = {path.name: path for path in (*folder.glob("*.py"), *folder.glob("*.rst"), *folder.glob("*.inp"))}
+        kinds = ("py", "rst", "inp", "csv")
+        sources = {path.name: path for kind in kinds for path in folder.glob(f"*.{kind}")}
         for old in (GENERATED / "examples" / name).glob("*"):
             if old.name not in sources:
                 old.unlink()

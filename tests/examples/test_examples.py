@@ -189,11 +189,35 @@ def check_violin(names: Mapping[str, Any], printed: str, folder: Path) -> None:
     assert (folder / "violin.png").read_bytes().startswith(b"\x89PNG")
 
 
+def check_lining(names: Mapping[str, Any], printed: str, folder: Path) -> None:
+    """It squeals in the stop where the friction of its temperature exceeds that at which two modes couple.
+
+    Stiffness of sliding in units of mass times the square of the rate, and damping, as one matrix of first order.
+    """
+    unit, angles = names["UNIT"], np.radians([150.0, 30.0])
+    ways = np.stack([np.cos(angles), np.sin(angles)])
+    grounded = ways @ np.diag([11.0, 20.0]) @ ways.T
+
+    def grows(temperature: float) -> bool:
+        mu = float(names["lining"].at(temperature).coefficient_at(names["SPEED"]))
+        stiffness = unit * (grounded + 11.0 * np.array([[0.0, -mu], [0.0, 1.0]]))
+        state = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness, -30.0 * np.eye(2)]])
+        return bool(np.linalg.eigvals(state).real.max() > 0.0)
+
+    np.testing.assert_array_equal(names["growth"] > 0.0, [grows(one) for one in names["temperatures"]])
+    first, last = (float(one) for one in re.search(r"from (\S+) to (\S+) degC", printed).groups())
+    for begin, end, celsius, regime in re.findall(r"(\S+) to (\S+) s, (\S+) degC: (.+)", printed):
+        assert (regime == "squeal") == (first < float(celsius) < last), (begin, end)
+    assert printed.count("squeal") == 1
+    assert (folder / "stop.png").read_bytes().startswith(b"\x89PNG")
+
+
 # One check for every example: it takes the example's names, what it printed and the folder it ran in.
 CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
     "brake.py": check_brake,
     "brake_pad.py": check_brake_pad,
     "cut_off_modes.py": check_cut_off_modes,
+    "lining.py": check_lining,
     "mass_on_a_belt.py": check_mass_on_a_belt,
     "pin_on_disc.py": check_pin_on_disc,
     "railway_wheel.py": check_railway_wheel,

@@ -330,7 +330,10 @@ def test_a_reduced_body_on_two_contacts_runs_exports_and_compares(stridula, tmp_
         ("contacts.0.tip.point=tipp", "contacts.0.tip.point must be one of tip, heel, got 'tipp'; did you mean 'tip'?"),
         ("contacts.1.tip.body=bad", "contacts.1.tip.body must be one of pad, got 'bad'; did you mean 'pad'?"),
         ("stiffness=12 N", "contacts.0.friction.stiffness must be a number in 1/m or 1/mm, got '12 N'"),
-        ("contacts.0.friction.law=lugr", ", lugre, rate and state, tabulated, got 'lugr'; did you mean 'lugre'?"),
+        (
+            "contacts.0.friction.law=lugr",
+            ", lugre, rate and state, tabulated, over temperature, got 'lugr'; did you mean 'lugre'?",
+        ),
     ],
 )
 @pytest.mark.usefixtures("pad")

@@ -97,7 +97,8 @@ def test_another_shape_starts_a_section_afresh():
         ({"drives.3.x": 1}, "got 'drives.3.x'; did you mean 'drives.0.x'?"),
         (
             {"contact": 1},
-            "set one of its keys at, friction, gap, stiffness, tangential_stiffness, tangential_damping, point, name",
+            "set one of its keys at, friction, gap, stiffness, tangential_stiffness, tangential_damping, heating, "
+            "point, name",
         ),
         ({"angle": "20 mm"}, "slider.angle must be a number in rad or deg, got '20 mm'"),
         ({"angle": "95 deg"}, "slider.angle must be strictly between -pi/2 and pi/2"),

@@ -427,7 +427,7 @@ def test_a_start_of_another_run_is_refused(change):
 @pytest.mark.parametrize(
     ("name", "change", "words"),
     [
-        ("state_carried", lambda state: state[:, :-3], r"state_carried of shape \(1, 27\), .*, got \(1, 24\)"),
+        ("state_carried", lambda state: state[:, :-3], r"state_carried of shape \(1, 35\), .*, got \(1, 32\)"),
         ("state_energies", lambda state: state[:-1], "state_energies of shape"),
         ("state_modal", lambda state: state * np.nan, "a finite state_modal"),
         ("state_modal", lambda state: state[0, 0], "the same number of modes"),

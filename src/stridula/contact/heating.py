@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,28 @@ from ..declared import Each, Number, OneOrEach, check_declared
 
 # Largest number of layers in the march.
 MOST_LAYERS = 8
+
+
+class OverStep(NamedTuple):
+    """Temperatures after a step: ``matrix @ temperatures + per_heat * heat + constant``.
+
+    Attributes
+    ----------
+    share : float
+        Share of the loss to friction that is heat for them.
+    matrix : ndarray, shape (layers, layers)
+        Temperatures after the step for those before.
+    per_heat, constant : ndarray, shape (layers,)
+        Rise for a heat that flows in evenly over the step [K/J], and what is there without temperatures and heat.
+    capacity : ndarray, shape (layers,)
+        Heat capacities [J/K].
+    """
+
+    share: float
+    matrix: Array
+    per_heat: Array
+    constant: Array
+    capacity: Array
 
 
 @dataclass(frozen=True)
@@ -154,6 +176,23 @@ class HeatedLayers:
         constant[-1] = self.cooling * self.ambient
         return matrix / capacity[:, None], constant / capacity
 
+    def over(self, step: float) -> OverStep:
+        """Return the temperatures after a step [s]: exact for their equations."""
+        # Imported here, as it takes longer than many a run.
+        from scipy.linalg import expm
+
+        count, (matrix, constant) = self.layers, self.rates
+        capacity, whole = np.array(self.capacity), np.zeros((self.layers + 2, self.layers + 2))
+        whole[:count, :count], whole[:count, count + 1] = matrix, constant
+        whole[0, count] = 1.0 / (capacity[0] * step)
+        after = expm(whole * step)[:count]
+        return OverStep(self.share, after[:, :count], after[:, count], after[:, count + 1], capacity)
+
+    @property
+    def history(self) -> tuple[Sequence[float], Sequence[float]]:
+        """Times [s] and temperatures [degC] that are prescribed: none."""
+        return (), ()
+
     def of_part(self, part: float) -> HeatedLayers:
         """Return the layers under a part of the contact, a share of its area."""
         capacity, conductance = (tuple(part * one for one in of) for of in (self.capacity, self._conductances))  # type: ignore[union-attr]
@@ -205,6 +244,16 @@ class TemperatureHistory:
     def start(self) -> Array:
         """Temperature at the start [degC], and time [s]."""
         return np.array([float(np.interp(0.0, self.time, self.temperature)), 0.0])
+
+    def over(self, step: float) -> OverStep:
+        """Return the temperature, which the history replaces, and the time after a step [s]."""
+        nothing = np.zeros(2)
+        return OverStep(0.0, np.diag([0.0, 1.0]), nothing, np.array([0.0, step]), nothing)
+
+    @property
+    def history(self) -> tuple[Sequence[float], Sequence[float]]:
+        """Times [s] and temperatures [degC] that are prescribed."""
+        return self.time, self.temperature
 
     def of_part(self, part: float) -> TemperatureHistory:
         """Return the history of a part of the contact, which is the same."""

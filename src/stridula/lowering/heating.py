@@ -11,7 +11,8 @@ from .._kernels.layout import columns as at
 from .._kernels.layout.heated_laws import FIRST_TEMPERATURE
 from ..arrays import Array
 from ..checks import ArgumentError
-from ..contact import HeatedLayers, PointContact, TemperatureHistory
+from ..contact import PointContact
+from ..contact.heating import OverStep
 from .contact_rows import ContactRows
 from .own_laws import law_of_march, of_one_width
 
@@ -41,10 +42,8 @@ def heat_blocks(contacts: Sequence[ContactRows], step: float) -> HeatBlocks:
     numbers = np.zeros((len(contacts), at.OF_HEATING if layers else 0))
     laws = [_laws_of_march(one.contact) for one in contacts] if layers else [np.zeros(0)] * len(contacts)
     for own, one in zip(numbers, contacts, strict=True):
-        if isinstance(one.contact.heating, HeatedLayers):
-            own[:] = _numbers_of_layers(one.contact.heating, step)
-        elif isinstance(one.contact.heating, TemperatureHistory):
-            own[at.PER_LAYER + at.LAYERS + 1], own[at.WITHOUT_LOSS + 1] = 1.0, step
+        if one.contact.heating is not None:
+            own[:] = _numbers_of_march(one.contact.heating.over(step))
     return HeatBlocks(layers, numbers, np.array(of_one_width(laws)))
 
 
@@ -57,23 +56,13 @@ def temperatures_at_start(contacts: Sequence[ContactRows]) -> Array:
     return found
 
 
-def _numbers_of_layers(heating: HeatedLayers, step: float) -> Array:
-    """Return the numbers of layers over a step in which friction heats them evenly: exact for their equations."""
-    # Imported here, as it takes longer than many a run.
-    from scipy.linalg import expm
-
-    count, (matrix, constant) = heating.layers, heating.rates
-    capacity = np.array(heating.capacity)
-    whole = np.zeros((count + 2, count + 2))
-    whole[:count, :count], whole[:count, count + 1] = matrix, constant
-    whole[0, count] = 1.0 / (capacity[0] * step)
-    after = expm(whole * step)[:count]
-    found = np.zeros(at.OF_HEATING)
-    found[at.HEAT_SHARE] = heating.share
-    found[at.PER_LAYER : at.PER_LOSS].reshape(at.LAYERS, at.LAYERS)[:count, :count] = after[:, :count]
-    found[at.PER_LOSS : at.PER_LOSS + count] = after[:, count]
-    found[at.WITHOUT_LOSS : at.WITHOUT_LOSS + count] = after[:, count + 1]
-    found[at.CAPACITY : at.CAPACITY + count] = capacity
+def _numbers_of_march(over: OverStep) -> Array:
+    """Return the numbers of the heating of a contact."""
+    count, found = over.capacity.size, np.zeros(at.OF_HEATING)
+    found[at.HEAT_SHARE] = over.share
+    found[at.PER_LAYER : at.PER_LOSS].reshape(at.LAYERS, at.LAYERS)[:count, :count] = over.matrix
+    for first, values in ((at.PER_LOSS, over.per_heat), (at.WITHOUT_LOSS, over.constant), (at.CAPACITY, over.capacity)):
+        found[first : first + count] = values
     return found
 
 
@@ -84,8 +73,7 @@ def _laws_of_march(contact: PointContact) -> Array:
     if len({row.size for row in rows}) > 1:
         words = "have laws with the same pieces at all temperatures: give them as TabulatedFriction"
         raise ArgumentError("friction", words, contact.friction)
-    history = contact.heating if isinstance(contact.heating, TemperatureHistory) else None
-    times = ((), ()) if history is None else (history.time, history.temperature)
+    times = ((), ()) if contact.heating is None else contact.heating.history
     counts = [len(given), rows[0].size if rows else 0, len(times[0])]
     assert len(counts) == FIRST_TEMPERATURE
     return np.concatenate([counts, [temperature for temperature, _ in given], *rows, *times])

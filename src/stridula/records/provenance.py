@@ -17,7 +17,7 @@ from ..bodies.damping import is_damping_law
 from ..bodies.drawn_surfaces import drawn_table
 from ..bodies.turning import Turning
 from ..connections import Connection, ends
-from ..contact import FrictionLaw, PointContact
+from ..contact import PointContact
 from ..drives import Drive
 from ..histories import Constant
 from ..system import System
@@ -180,8 +180,9 @@ def _value(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {name: _value(entry) for name, entry in value.items()}
     if is_dataclass(value) and not isinstance(value, type):
-        tag = {"law": value.law} if isinstance(value, FrictionLaw) else {}
-        return tag | ({"form": value.form} if is_damping_law(value) else {}) | _plain(value)
+        law, form = getattr(value, "law", None), value.form if is_damping_law(value) else None
+        tags = {name: word for name, word in (("law", law), ("form", form)) if word is not None}
+        return tags | _plain(value)
     if isinstance(value, bool):
         return value
     if isinstance(value, Integral):
