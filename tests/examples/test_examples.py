@@ -192,16 +192,19 @@ def check_violin(names: Mapping[str, Any], printed: str, folder: Path) -> None:
 def check_lining(names: Mapping[str, Any], printed: str, folder: Path) -> None:
     """It squeals in the stop where the friction of its temperature exceeds that at which two modes couple.
 
-    Stiffness of sliding in units of mass times the square of the rate, and damping, as one matrix of first order.
+    Stiffness of sliding and damping, to which friction that falls with the speed adds, as one matrix of first order.
     """
     unit, angles = names["UNIT"], np.radians([150.0, 30.0])
     ways = np.stack([np.cos(angles), np.sin(angles)])
     grounded = ways @ np.diag([11.0, 20.0]) @ ways.T
 
     def grows(temperature: float) -> bool:
-        mu = float(names["lining"].at(temperature).coefficient_at(names["SPEED"]))
+        law, speed = names["lining"].at(temperature), names["SPEED"]
+        mu, slope = float(law.coefficient_at(speed)), law.linearised_at(speed).slope
         stiffness = unit * (grounded + 11.0 * np.array([[0.0, -mu], [0.0, 1.0]]))
-        state = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness, -30.0 * np.eye(2)]])
+        normal = -11.0 * unit * np.linalg.solve(stiffness, [0.0, -names["LOAD"]])[1]
+        damping = 30.0 * np.eye(2) + np.diag([slope * normal, 0.0])
+        state = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness, -damping]])
         return bool(np.linalg.eigvals(state).real.max() > 0.0)
 
     np.testing.assert_array_equal(names["growth"] > 0.0, [grows(one) for one in names["temperatures"]])
