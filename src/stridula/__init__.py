@@ -118,11 +118,13 @@ _HOME = {
         "critical_value",
         "ensemble",
         "follow_cycle",
+        "mode_sensitivity",
         "orbit_diagram",
         "root_loci",
         "sensitivity",
         "squeal_survey",
         "sweep",
+        "what_helps",
     ),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}

@@ -148,10 +148,12 @@ from .studies import check_step as check_step
 from .studies import critical_value as critical_value
 from .studies import ensemble as ensemble
 from .studies import follow_cycle as follow_cycle
+from .studies import mode_sensitivity as mode_sensitivity
 from .studies import orbit_diagram as orbit_diagram
 from .studies import root_loci as root_loci
 from .studies import sensitivity as sensitivity
 from .studies import squeal_survey as squeal_survey
 from .studies import sweep as sweep
+from .studies import what_helps as what_helps
 from .system import System as System
 from .version import __version__ as __version__

@@ -88,7 +88,9 @@ def faults_of_layout(text: str) -> list[str]:
 
     quiet = {"report_level": 5, "halt_level": 5}
     sections = NumpyDocString(text)
-    items = [item for section in ("Parameters", "Attributes", "Returns", "Raises", "Yields") for item in sections[section]]
+    items = [
+        item for section in ("Parameters", "Attributes", "Returns", "Raises", "Yields") for item in sections[section]
+    ]
     written = ["\n".join(sections["Extended Summary"]), *("\n".join(item.desc) for item in items)]
     trees = [publish_doctree(part, settings_overrides=quiet) for part in written]
     messages = [message.astext() for tree in trees for message in tree.parse_messages]

@@ -1,0 +1,386 @@
+"""Derivatives of the modes of sliding by parameters of the system, and what a finite change of each does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..arrays import Array
+from ..bodies import BodyPoint
+from ..checks import ArgumentError, brief, by_key, count, instance, listed, non_negative, positive
+from ..linear.equilibrium import JAMMED, Equilibrium, find_equilibrium
+from ..linear.given import Status, Velocity, given_status, given_velocity
+from ..linear.mode_groups import ModeGroup, group_of
+from ..linear.modes import modes_of, round_off
+from ..linear.pencils import Pencil, by_mass, combined, displacement_rows, pencil_of, turned_onto
+from ..linear.structure import Structure
+from ..linear.vibration import Exponents, vibration
+from ..records.variables import described
+from ..scenarios.load import scenario_of_tables
+from ..system import System
+from .loci import origin_of
+from .task import one_thread_each
+from .values_by_key import Value, all_values, si_tables, value_of
+
+# Modes in the result where none grows: those that decay least.
+FEWEST = 5
+# Change of a parameter, relative to it, at which matrices are differenced: of an error of the fourth order.
+STEP = 2e-3
+PLACES = (-2.0, -1.0, 1.0, 2.0)
+SLOPE = (1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0)
+# The fourth difference, with the middle last, vanishes for whatever is smooth.
+KINK = (1.0, -4.0, -4.0, 1.0, 6.0)
+# Largest kink relative to the derivative; and smallest change that counts, for a change of the parameter by its size.
+UNEVEN, COUNTS = 1e-4, 1e-6
+Source = str | Path | xr.Dataset | System
+Where = BodyPoint | tuple[str, Any]
+
+
+def mode_sensitivity(
+    source: Source,
+    parameters: Sequence[str] | None = None,
+    *,
+    masses: Mapping[str, Where] | None = None,
+    change: float = 0.1,
+    overrides: Mapping[str, Any] | None = None,
+    modes: int | None = None,
+    near: float | None = None,
+    status: Status | None = None,
+    velocity: Velocity | None = None,
+    time: float | None = None,
+) -> xr.Dataset:
+    """Return the derivatives of frequency and growth rate of modes of sliding by parameters of the system.
+
+    With the right and left vectors x and y of an exponent s of the small motions ``B x' = A x`` of
+    `sliding_stability`, constraints included::
+
+        ds = y^T (dA - s dB) x / (y^T B x)
+
+    (Lancaster 1964, Numerische Mathematik 6). The equilibrium is found again for each change of a parameter, so that
+    forces, slip velocities, slopes of friction and stiffnesses of contacts follow it. The matrices are differenced at
+    four values within 0.4 % of the parameter, without error where they are affine in it, as in coefficients of friction
+    or stiffnesses, else with one of about 1e-11. Derivatives by an added mass are in closed form.
+
+    Modes that merge have derivatives that grow without bound; those of sum and product of both exponents remain
+    finite. The change by a finite change of a parameter is that of both modes together.
+
+    Parameters
+    ----------
+    source : str, Path, xarray.Dataset or System
+        A scenario, as for `load_scenario`, or a system.
+    parameters : sequence of str, optional
+        Keys of numbers as for `sweep`: a full path such as ``contact.friction.coefficient`` or any unique ending of
+        one; those of a system are the keys of its scenario. A key that begins with the name of a contact, a surface
+        or a connection means its own number; ``friction.coefficient`` means those of all contacts. Several numbers
+        change in proportion, and the derivative is by their mean. By default all numbers other than lengths and places
+        that are given and not 0.
+    masses : mapping, optional
+        Points at which a point mass is added, by name: a point of the system, or the name of a body and a point of it.
+        The derivative is by the mass [kg], whose weight does not count.
+    change : float, optional
+        Change of each parameter, relative to it, whose effect is predicted [1].
+    overrides : mapping, optional
+        Values of other keys.
+    modes : int, optional
+        Number of modes, those nearest to `near`; by default those that grow or, if none does, the five that decay
+        least.
+    near : float, optional
+        Frequency [Hz] around which `modes` are chosen.
+    status, velocity, time : optional
+        As for `sliding_stability`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``parameter`` and ``mode``, numbered as in `sliding_stability`: ``d_growth_rate`` [1/s] and ``d_frequency``
+        [Hz] per unit of the parameter; ``growth_rate_change`` [1/s] and ``frequency_change`` [Hz] for `change` of it,
+        NaN for masses; ``d_sum`` [1/s] and ``d_product`` [1/s²] per unit, real and imaginary ``part``, of the exponents
+        of a pair, NaN for other modes. Over ``mode``: ``frequency`` [Hz], ``growth_rate`` [1/s], ``unstable``;
+        ``kind``: ``alone``, ``merging`` where the shape is more like that of the ``partner`` than not, or ``double``
+        where others have the same exponent, whose derivatives are then those in which each parameter splits them;
+        ``partner``, its number, -1 for none. Over ``parameter``: ``value`` and ``units``. ``attrs["left_out"]`` has
+        the reasons why some parameters are not among those by default.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario cannot be used, or a key is not known or means several places.
+    ValueError
+        If an argument is out of its range, there is no equilibrium with modes, or the modes have no derivative by a
+        parameter: its value is 0, the status of a contact or the number of modes changes with it, or it has a kink.
+    """
+    positive("change", change)
+    chosen = _Chosen(modes, near)
+    tables = si_tables(source, by_key("overrides", overrides))
+    values = all_values(tables) if parameters is None else [value_of(key, tables) for key in _keys(parameters)]
+    own = source if isinstance(source, System) and not overrides else scenario_of_tables(tables).system
+    with one_thread_each():
+        base = _Base(own, status, velocity, time)
+        groups = {number: group_of(base.pencil, base.found, number) for number in chosen.of(base)}
+        changes, refused = base.all_changes(values, list(groups.values()), keeps_on=parameters is None)
+        for name, where in by_key("masses", masses).items():
+            slope = by_mass(base.pencil, displacement_rows(base.structure, _point(name, where, own, source)))
+            changes[f"mass at {name}"] = [group.pair.derivative(slope) for group in groups.values()]
+    if not changes:
+        raise ArgumentError("parameters", "hold at least one key", parameters, got="none")
+    sizes = {one.key: (one.value, one.units) for one in values}
+    origin = {} if isinstance(source, System) else origin_of(source, overrides)
+    return _dataset(base, groups, changes, sizes, change, {"left_out": "; ".join(refused), **origin})
+
+
+def what_helps(found: xr.Dataset, mode: int | None = None) -> xr.Dataset:
+    """Return the derivatives of a mode with the parameter that changes its growth most first.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        Result of `mode_sensitivity`.
+    mode : int, optional
+        Number of the mode; that which grows fastest if left out.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``parameter`` its derivatives, changes, values and units, and ``better``: whether to ``raise`` the
+        parameter for less growth, or to ``lower`` it, towards 0. ``to_dataframe()`` makes it a table.
+
+    Raises
+    ------
+    ValueError
+        If `found` is anything else, or has no such mode.
+    """
+    one = mode_of(found, mode)
+    size = np.abs(one["growth_rate_change"].values)
+    order = np.argsort(-np.nan_to_num(size, nan=-np.inf), kind="stable")
+    names = ["d_growth_rate", "d_frequency", "growth_rate_change", "frequency_change"]
+    table = one[names].isel(parameter=order)
+    rises = table["d_growth_rate"].values * np.sign(np.nan_to_num(table["value"].values, nan=1.0)) > 0.0
+    return table.assign(better=("parameter", np.where(rises, "lower", "raise")))
+
+
+def mode_of(found: xr.Dataset, mode: int | None) -> xr.Dataset:
+    """Return the derivatives of one mode, of that which grows fastest if none is named.
+
+    Raises
+    ------
+    ValueError
+        If they are not those of `mode_sensitivity`, or there is no such mode.
+    """
+    instance("found", found, xr.Dataset)
+    if "d_growth_rate" not in found:
+        raise ArgumentError("found", "be the result of mode_sensitivity", found, got=listed(map(str, found.data_vars)))
+    if mode is None:
+        return found.isel(mode=int(found["growth_rate"].values.argmax()))
+    if mode not in found["mode"].values:
+        raise ArgumentError("mode", f"be one of {listed(map(str, found['mode'].values))}", mode)
+    return found.sel(mode=mode)
+
+
+@dataclass(frozen=True)
+class _Chosen:
+    """Choice of modes by number and frequency [Hz]."""
+
+    modes: int | None
+    near: float | None
+
+    def __post_init__(self) -> None:
+        if self.modes is not None:
+            count("modes", self.modes)
+        if self.near is not None:
+            non_negative("near", self.near)
+            if self.modes is None:
+                raise ArgumentError("near", "be used with modes", self.near)
+
+    def of(self, base: _Base) -> list[int]:
+        """Return the numbers of the chosen modes in their order."""
+        values, shapes = base.found.values, base.found.shapes
+        vibrates = (np.abs(values) > base.slack) & shapes.any(axis=0)
+        if self.modes is not None:
+            distance = np.abs(values - 2.0j * np.pi * (self.near or 0.0))
+            order = np.argsort(np.where(vibrates, distance, np.inf), kind="stable")[: self.modes]
+        else:
+            grows = int(np.sum(vibrates & (values.real > base.slack)))
+            order = np.argsort(np.where(vibrates, -values.real, np.inf), kind="stable")[: grows or FEWEST]
+        chosen = sorted(number for number in order.tolist() if vibrates[number])
+        if not chosen:
+            raise ArgumentError("source", "have modes of vibration", got="none")
+        return chosen
+
+
+class _Base:
+    """Small motions of a system about its equilibrium, and of the same with one value changed."""
+
+    def __init__(self, system: System, status: Status | None, velocity: Velocity | None, time: float | None) -> None:
+        self._given = given_status(status, system), velocity, time
+        self.structure, self.equilibrium = self._about(system)
+        if self.equilibrium.kind == JAMMED and status is None:
+            raise ArgumentError("source", "have an equilibrium with modes", got=self.equilibrium.kind)
+        self.motion = vibration(self.structure, self.equilibrium)
+        self.slack = round_off(self.structure)
+
+    @cached_property
+    def found(self) -> Exponents:
+        """Its modes."""
+        return modes_of(self.structure, self.motion)
+
+    @cached_property
+    def pencil(self) -> Pencil:
+        """Its small motions as a pencil."""
+        return pencil_of(self.motion)
+
+    def all_changes(
+        self, values: Sequence[Value], groups: Sequence[ModeGroup], keeps_on: bool
+    ) -> tuple[dict[str, list[Array]], list[str]]:
+        """Return the derivatives by each value and, if this keeps on, the reasons why others have none."""
+        found, refused = dict[str, list[Array]](), list[str]()
+        for value in values:
+            try:
+                found[value.key] = self.changes(value, groups)
+            except ValueError as error:
+                if not keeps_on:
+                    raise
+                refused.append(str(error))
+        return found, refused
+
+    def changes(self, value: Value, groups: Sequence[ModeGroup]) -> list[Array]:
+        """Return the derivatives of the matrices of groups of modes by a value.
+
+        Raises
+        ------
+        ArgumentError
+            If they have none.
+        """
+        step = STEP * value.value
+        pencils = [self._changed(value, value.value + place * step) for place in PLACES]
+        slope = combined(pencils, [weight / step for weight in SLOPE])
+        kink = combined([*pencils, self.pencil], [weight / step for weight in KINK])
+        found = []
+        for group in groups:
+            by_value = group.pair.derivative(slope)
+            least = UNEVEN * np.abs(by_value).max() + COUNTS * abs(group.exponent) / abs(value.value)
+            if not np.abs(group.pair.derivative(kink)).max() <= least:
+                raise ArgumentError("parameters", f"change modes smoothly, and {value.key} has a kink", got=value.value)
+            found.append(by_value)
+        return found
+
+    def _changed(self, value: Value, number: float) -> Pencil:
+        """Return the small motions with another number, on the coordinates of the first system."""
+        structure, equilibrium = self._about(value.system(number))
+        if structure.mode_count != self.structure.mode_count:
+            raise self._unlike(value, number, "modes below the cutoffs of their bodies")
+        if equilibrium.status != self.equilibrium.status:
+            raise self._unlike(value, number, "statuses of contacts")
+        motion = vibration(structure, equilibrium, self.motion.spread)
+        return pencil_of(motion, turned_onto(self.structure, structure))
+
+    def _unlike(self, value: Value, number: float, what: str) -> ArgumentError:
+        got = f"{brief(number)} in place of {brief(value.value)}"
+        return ArgumentError("parameters", f"leave the {what} as they are, and {value.key} changes them", got=got)
+
+    def _about(self, system: System) -> tuple[Structure, Equilibrium]:
+        status, velocity, time = self._given
+        structure = Structure(system, time)
+        return structure, find_equilibrium(structure, given_velocity(velocity, structure, status), status)
+
+
+def _keys(parameters: Any) -> list[str]:
+    if isinstance(parameters, str) or not isinstance(parameters, Sequence):
+        raise ArgumentError("parameters", "be a list of keys", parameters)
+    twice = next((one for one in parameters if list(parameters).count(one) > 1), None)
+    if twice is not None:
+        raise ArgumentError("parameters", "be different", twice, got=f"{brief(twice)} twice")
+    return list(parameters)
+
+
+def _point(name: str, where: Any, system: System, source: Source) -> BodyPoint:
+    """Return the point of a system at which a mass is added."""
+    key, names = f"masses[{name!r}]", {system.body_name(body): body for body in system.bodies}
+    if isinstance(where, BodyPoint):
+        if where.body not in system.bodies:
+            raise ArgumentError(key, f"be a point of a body of the system ({listed(names)})", where)
+        return where
+    if not isinstance(where, tuple) or len(where) != 2:
+        raise ArgumentError(key, "be a point, or the name of a body and a point of it", where)
+    body: Any = names.get(where[0])
+    if body is None:
+        raise ArgumentError(key, f"name a body of the system ({listed(names)})", where[0])
+    try:
+        return body.at(where[1]) if not isinstance(where[1], str) else BodyPoint(body, _position(body, where[1]))
+    except ArgumentError as error:
+        raise error.renamed(key) from None
+
+
+def _position(body: Any, name: str) -> Any:
+    """Return the position of a named point of a body."""
+    return getattr(body, name).position if body.has_positions and name in body.point_names else name
+
+
+def _dataset(
+    base: _Base,
+    groups: Mapping[int, ModeGroup],
+    changes: Mapping[str, Sequence[Array]],
+    sizes: Mapping[str, tuple[float, str]],
+    change: float,
+    origin: Mapping[str, str],
+) -> xr.Dataset:
+    numbers, both = list(groups), ("parameter", "mode")
+    values = base.found.values[numbers]
+
+    def table(of: Callable[[ModeGroup, Array, float], Any]) -> Array:
+        return np.array(
+            [
+                [
+                    of(group, one, change * sizes.get(key, (np.nan, ""))[0])
+                    for group, one in zip(groups.values(), row, strict=True)
+                ]
+                for key, row in changes.items()
+            ]
+        )
+
+    slopes = table(lambda group, one, _: group.slope(one))
+    moved = table(
+        lambda group, one, amount: group.moved(one, amount) if np.isfinite(amount) else complex(np.nan, np.nan)
+    )
+    invariants = table(lambda group, one, _: group.invariants(one))
+    percent = f"{100.0 * change:g} % of the parameter"
+    data = {
+        "frequency": ("mode", values.imag / (2.0 * np.pi), described("Hz", "frequency of vibration")),
+        "growth_rate": ("mode", values.real, described("1/s", "rate at which the amplitude grows")),
+        "unstable": ("mode", values.real > base.slack, described("1", "whether the mode grows")),
+        "kind": ("mode", [one.kind for one in groups.values()]),
+        "partner": ("mode", [one.partner for one in groups.values()]),
+        "d_growth_rate": (both, slopes.real, described("1/s", "derivative of the growth rate, per unit")),
+        "d_frequency": (both, slopes.imag / (2.0 * np.pi), described("Hz", "derivative of the frequency, per unit")),
+        "growth_rate_change": (both, moved.real, described("1/s", f"change of the growth rate by {percent}")),
+        "frequency_change": (
+            both,
+            moved.imag / (2.0 * np.pi),
+            described("Hz", f"change of the frequency by {percent}"),
+        ),
+        "d_sum": ((*both, "part"), _parts(invariants[..., 0]), described("1/s", "derivative of the sum, per unit")),
+        "d_product": (
+            (*both, "part"),
+            _parts(invariants[..., 1]),
+            described("1/s2", "derivative of the product, per unit"),
+        ),
+    }
+    found = [sizes.get(key, (np.nan, "kg")) for key in changes]
+    coordinates = {
+        "parameter": list(changes),
+        "mode": numbers,
+        "part": ["real", "imaginary"],
+        "value": ("parameter", [value for value, _ in found]),
+        "units": ("parameter", [units for _, units in found]),
+    }
+    attributes = {"change": change, "equilibrium": base.equilibrium.kind, "round_off": base.slack}
+    return xr.Dataset(data, coordinates, attributes | dict(origin))
+
+
+def _parts(numbers: Array) -> Array:
+    return np.stack([numbers.real, numbers.imag], axis=-1)
