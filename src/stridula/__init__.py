@@ -97,6 +97,7 @@ _HOME = {
     "acoustics.listening": ("PlayableSound", "listen"),
     "acoustics.wav": ("SoundFile", "read_wav", "write_wav"),
     "analysis.mobilities": ("mobility",),
+    "analysis.mode_effects": ("what_helps",),
     "analysis.stability": ("sliding_stability",),
     "analysis": ("regime", "worn"),
     "analysis.record_card": ("RecordCard", "card"),
@@ -124,7 +125,6 @@ _HOME = {
         "sensitivity",
         "squeal_survey",
         "sweep",
-        "what_helps",
     ),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}

@@ -36,6 +36,7 @@ from .acoustics.wav import write_wav as write_wav
 from .analysis import regime as regime
 from .analysis import worn as worn
 from .analysis.mobilities import mobility as mobility
+from .analysis.mode_effects import what_helps as what_helps
 from .analysis.record_card import RecordCard as RecordCard
 from .analysis.record_card import card as card
 from .analysis.stability import sliding_stability as sliding_stability
@@ -154,6 +155,5 @@ from .studies import root_loci as root_loci
 from .studies import sensitivity as sensitivity
 from .studies import squeal_survey as squeal_survey
 from .studies import sweep as sweep
-from .studies import what_helps as what_helps
 from .system import System as System
 from .version import __version__ as __version__

@@ -11,8 +11,9 @@ import scipy.linalg
 from ..arrays import Array
 from .pencils import Pencil
 
-# Distance of the shift from the exponents, relative to them.
-BESIDE = 1e-5
+# Distance of the shift from the middle of the exponents, relative to that of the nearest other one: each iteration
+# reduces errors by about this factor.
+BESIDE = 0.05
 # Most iterations, and angle between subspaces, relative to rounding, that ends them.
 PASSES, SETTLED = 60, 8.0
 # Angle below which its rise is that of rounding.
@@ -55,7 +56,7 @@ class InvariantPair:
         return to_motion.T @ pushed + to_states.T @ driven + to_constraints.T @ (change.held @ place)
 
 
-def invariant_pair(pencil: Pencil, exponents: Sequence[complex], shapes: Array) -> InvariantPair:
+def invariant_pair(pencil: Pencil, exponents: Sequence[complex], shapes: Array, gap: float) -> InvariantPair:
     """Return the invariant subspaces of exponents, by inverse iteration from their approximate shapes.
 
     Parameters
@@ -66,9 +67,11 @@ def invariant_pair(pencil: Pencil, exponents: Sequence[complex], shapes: Array) 
         A few exponents that lie close together [1/s].
     shapes : ndarray of complex, shape (modes, group)
         Their modal displacements.
+    gap : float
+        Distance of the nearest other exponent from their middle [1/s].
     """
     values = np.array(exponents)
-    shift = complex(values.mean() + BESIDE * np.abs(values).max() * (1.0 + 1.0j))
+    shift = complex(values.mean() + BESIDE * gap * np.exp(0.25j * np.pi))
     about = _About(pencil, shift)
     start = about.started(values, shapes)
     before, right = _settled(about.right, start, abs(shift))

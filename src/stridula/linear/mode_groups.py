@@ -109,7 +109,9 @@ def group_of(pencil: Pencil, found: Exponents, number: int) -> ModeGroup:
     equal = np.flatnonzero(distance <= EQUAL).tolist()
     nearest = int(distance.argmin())
     members = sorted([number, *equal]) if equal else _near(values, distance, number)
-    pair = invariant_pair(pencil, values[members].tolist(), _stirred(shapes[:, members]))
+    there[members] = False
+    others = np.abs(values[there] - values[members].mean()).min(initial=abs(exponent))
+    pair = invariant_pair(pencil, values[members].tolist(), _stirred(shapes[:, members]), float(others))
     if equal:
         spread = pair.matrix - exponent * np.eye(len(members))
         kind = DOUBLE if np.abs(spread).max() <= EQUAL * abs(exponent) else MERGING

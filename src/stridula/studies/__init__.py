@@ -30,7 +30,6 @@ _HOME = {
     "squeal_survey": "surveys",
     "survey_table": "tables",
     "sweep": "sweeps",
-    "what_helps": "mode_derivatives",
 }
 __all__ = [*_HOME]
 

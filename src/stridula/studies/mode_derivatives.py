@@ -13,11 +13,11 @@ import xarray as xr
 
 from ..arrays import Array
 from ..bodies import BodyPoint
-from ..checks import ArgumentError, brief, by_key, count, instance, listed, non_negative, positive
+from ..checks import ArgumentError, brief, by_key, count, listed, non_negative, positive
 from ..linear.equilibrium import JAMMED, Equilibrium, find_equilibrium
 from ..linear.given import Status, Velocity, given_status, given_velocity
 from ..linear.mode_groups import ModeGroup, group_of
-from ..linear.modes import modes_of, round_off
+from ..linear.modes import ROUND_OFF, modes_of, round_off
 from ..linear.pencils import Pencil, by_mass, combined, displacement_rows, pencil_of, turned_onto
 from ..linear.structure import Structure
 from ..linear.vibration import Exponents, vibration
@@ -30,14 +30,15 @@ from .values_by_key import Value, all_values, si_tables, value_of
 
 # Modes in the result where none grows: those that decay least.
 FEWEST = 5
-# Change of a parameter, relative to it, at which matrices are differenced: of an error of the fourth order.
-STEP = 2e-3
+# Changes of a parameter, relative to it, at which matrices are differenced, of an error of the fourth order: the second
+# one where the first meets another mesh or another status.
+STEPS = (5e-4, 5e-5)
 PLACES = (-2.0, -1.0, 1.0, 2.0)
 SLOPE = (1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0)
 # The fourth difference, with the middle last, vanishes for whatever is smooth.
 KINK = (1.0, -4.0, -4.0, 1.0, 6.0)
-# Largest kink relative to the derivative; and smallest change that counts, for a change of the parameter by its size.
-UNEVEN, COUNTS = 1e-4, 1e-6
+# Largest kink relative to the derivative, beyond round-off of matrices: this many times that of the highest frequency.
+UNEVEN, ROUNDINGS = 1e-6, 100.0
 Source = str | Path | xr.Dataset | System
 Where = BodyPoint | tuple[str, Any]
 
@@ -64,8 +65,8 @@ def mode_sensitivity(
 
     (Lancaster 1964, Numerische Mathematik 6). The equilibrium is found again for each change of a parameter, so that
     forces, slip velocities, slopes of friction and stiffnesses of contacts follow it. The matrices are differenced at
-    four values within 0.4 % of the parameter, without error where they are affine in it, as in coefficients of friction
-    or stiffnesses, else with one of about 1e-11. Derivatives by an added mass are in closed form.
+    four values within 0.1 % of the parameter: exactly where they are affine in it, as in coefficients of friction or
+    stiffnesses, else to 1e-12, apart from rounding. Derivatives by an added mass are in closed form.
 
     Modes that merge have derivatives that grow without bound; those of sum and product of both exponents remain
     finite. The change by a finite change of a parameter is that of both modes together.
@@ -132,54 +133,6 @@ def mode_sensitivity(
     sizes = {one.key: (one.value, one.units) for one in values}
     origin = {} if isinstance(source, System) else origin_of(source, overrides)
     return _dataset(base, groups, changes, sizes, change, {"left_out": "; ".join(refused), **origin})
-
-
-def what_helps(found: xr.Dataset, mode: int | None = None) -> xr.Dataset:
-    """Return the derivatives of a mode with the parameter that changes its growth most first.
-
-    Parameters
-    ----------
-    found : xarray.Dataset
-        Result of `mode_sensitivity`.
-    mode : int, optional
-        Number of the mode; that which grows fastest if left out.
-
-    Returns
-    -------
-    xarray.Dataset
-        Over ``parameter`` its derivatives, changes, values and units, and ``better``: whether to ``raise`` the
-        parameter for less growth, or to ``lower`` it, towards 0. ``to_dataframe()`` makes it a table.
-
-    Raises
-    ------
-    ValueError
-        If `found` is anything else, or has no such mode.
-    """
-    one = mode_of(found, mode)
-    size = np.abs(one["growth_rate_change"].values)
-    order = np.argsort(-np.nan_to_num(size, nan=-np.inf), kind="stable")
-    names = ["d_growth_rate", "d_frequency", "growth_rate_change", "frequency_change"]
-    table = one[names].isel(parameter=order)
-    rises = table["d_growth_rate"].values * np.sign(np.nan_to_num(table["value"].values, nan=1.0)) > 0.0
-    return table.assign(better=("parameter", np.where(rises, "lower", "raise")))
-
-
-def mode_of(found: xr.Dataset, mode: int | None) -> xr.Dataset:
-    """Return the derivatives of one mode, of that which grows fastest if none is named.
-
-    Raises
-    ------
-    ValueError
-        If they are not those of `mode_sensitivity`, or there is no such mode.
-    """
-    instance("found", found, xr.Dataset)
-    if "d_growth_rate" not in found:
-        raise ArgumentError("found", "be the result of mode_sensitivity", found, got=listed(map(str, found.data_vars)))
-    if mode is None:
-        return found.isel(mode=int(found["growth_rate"].values.argmax()))
-    if mode not in found["mode"].values:
-        raise ArgumentError("mode", f"be one of {listed(map(str, found['mode'].values))}", mode)
-    return found.sel(mode=mode)
 
 
 @dataclass(frozen=True)
@@ -256,16 +209,26 @@ class _Base:
         ArgumentError
             If they have none.
         """
-        step = STEP * value.value
+        for share in STEPS:
+            try:
+                return self._slopes(value, share * value.value, groups)
+            except ArgumentError as error:
+                refused = error
+        raise refused
+
+    def _slopes(self, value: Value, step: float, groups: Sequence[ModeGroup]) -> list[Array]:
+        """Return differences of the matrices of groups over a step of a value."""
         pencils = [self._changed(value, value.value + place * step) for place in PLACES]
         slope = combined(pencils, [weight / step for weight in SLOPE])
         kink = combined([*pencils, self.pencil], [weight / step for weight in KINK])
+        highest = max(self.slack / ROUND_OFF, float(np.abs(self.found.values).max()))
+        rounding = ROUNDINGS * np.finfo(float).eps * highest**2 / abs(step)
         found = []
         for group in groups:
             by_value = group.pair.derivative(slope)
-            least = UNEVEN * np.abs(by_value).max() + COUNTS * abs(group.exponent) / abs(value.value)
+            least = UNEVEN * np.abs(by_value).max() + rounding / (2.0 * abs(group.exponent))
             if not np.abs(group.pair.derivative(kink)).max() <= least:
-                raise ArgumentError("parameters", f"change modes smoothly, and {value.key} has a kink", got=value.value)
+                raise ArgumentError("parameters", f"change modes smoothly, and {value.key} does not", got=value.value)
             found.append(by_value)
         return found
 
