@@ -179,6 +179,7 @@ HOMES = {
     "analysis": "Regimes",
     "analysis.record_card": "Cards of records",
     "analysis.mobilities": "Mobilities",
+    "analysis.mode_effects": "Effects of parameters",
     "analysis.stability": "Linear stability",
     "bars": "Progress",
     "cycles": "Limit cycles",

@@ -13,7 +13,7 @@ import xarray as xr
 
 from ..arrays import Array
 from ..bodies import BodyPoint
-from ..checks import ArgumentError, brief, by_key, count, listed, non_negative, positive
+from ..checks import ArgumentError, brief, by_key, count, instance, listed, non_negative, positive
 from ..linear.equilibrium import JAMMED, Equilibrium, find_equilibrium
 from ..linear.given import Status, Velocity, given_status, given_velocity
 from ..linear.mode_groups import ModeGroup, group_of
@@ -26,7 +26,7 @@ from ..scenarios.load import scenario_of_tables
 from ..system import System
 from .loci import origin_of
 from .task import one_thread_each
-from .values_by_key import Value, all_values, si_tables, value_of
+from .values_by_key import Value, all_values, is_written, si_tables, value_of
 
 # Modes in the result where none grows: those that decay least.
 FEWEST = 5
@@ -118,20 +118,23 @@ def mode_sensitivity(
     """
     positive("change", change)
     chosen = _Chosen(modes, near)
+    given: Any = source
+    if not is_written(source):
+        instance("source", source, System)
     tables = si_tables(source, by_key("overrides", overrides))
     values = all_values(tables) if parameters is None else [value_of(key, tables) for key in _keys(parameters)]
-    own = source if isinstance(source, System) and not overrides else scenario_of_tables(tables).system
+    own = scenario_of_tables(tables).system if is_written(source) or overrides else given
     with one_thread_each():
         base = _Base(own, status, velocity, time)
         groups = {number: group_of(base.pencil, base.found, number) for number in chosen.of(base)}
         changes, refused = base.all_changes(values, list(groups.values()), keeps_on=parameters is None)
         for name, where in by_key("masses", masses).items():
-            slope = by_mass(base.pencil, displacement_rows(base.structure, _point(name, where, own, source)))
+            slope = by_mass(base.pencil, displacement_rows(base.structure, _point(name, where, own)))
             changes[f"mass at {name}"] = [group.pair.derivative(slope) for group in groups.values()]
     if not changes:
         raise ArgumentError("parameters", "hold at least one key", parameters, got="none")
     sizes = {one.key: (one.value, one.units) for one in values}
-    origin = {} if isinstance(source, System) else origin_of(source, overrides)
+    origin = origin_of(given, overrides) if is_written(source) else {}
     return _dataset(base, groups, changes, sizes, change, {"left_out": "; ".join(refused), **origin})
 
 
@@ -228,7 +231,8 @@ class _Base:
             by_value = group.pair.derivative(slope)
             least = UNEVEN * np.abs(by_value).max() + rounding / (2.0 * abs(group.exponent))
             if not np.abs(group.pair.derivative(kink)).max() <= least:
-                raise ArgumentError("parameters", f"change modes smoothly, and {value.key} does not", got=value.value)
+                got = f"{brief(value.value)} for {value.key}, which does not"
+                raise ArgumentError("parameters", "change modes smoothly", got=got)
             found.append(by_value)
         return found
 
@@ -236,15 +240,15 @@ class _Base:
         """Return the small motions with another number, on the coordinates of the first system."""
         structure, equilibrium = self._about(value.system(number))
         if structure.mode_count != self.structure.mode_count:
-            raise self._unlike(value, number, "modes below the cutoffs of their bodies")
+            raise self._unlike(value, number, "the modes below the cutoffs of bodies")
         if equilibrium.status != self.equilibrium.status:
-            raise self._unlike(value, number, "statuses of contacts")
+            raise self._unlike(value, number, "the statuses of contacts")
         motion = vibration(structure, equilibrium, self.motion.spread)
         return pencil_of(motion, turned_onto(self.structure, structure))
 
     def _unlike(self, value: Value, number: float, what: str) -> ArgumentError:
-        got = f"{brief(number)} in place of {brief(value.value)}"
-        return ArgumentError("parameters", f"leave the {what} as they are, and {value.key} changes them", got=got)
+        got = f"{brief(value.value)} for {value.key}, of which {brief(number)} changes them"
+        return ArgumentError("parameters", f"leave {what} as they are", got=got)
 
     def _about(self, system: System) -> tuple[Structure, Equilibrium]:
         status, velocity, time = self._given
@@ -261,18 +265,19 @@ def _keys(parameters: Any) -> list[str]:
     return list(parameters)
 
 
-def _point(name: str, where: Any, system: System, source: Source) -> BodyPoint:
+def _point(name: str, where: Any, system: System) -> BodyPoint:
     """Return the point of a system at which a mass is added."""
     key, names = f"masses[{name!r}]", {system.body_name(body): body for body in system.bodies}
-    if isinstance(where, BodyPoint):
+    if not isinstance(where, tuple):
+        instance(key, where, BodyPoint)
         if where.body not in system.bodies:
             raise ArgumentError(key, f"be a point of a body of the system ({listed(names)})", where)
-        return where
-    if not isinstance(where, tuple) or len(where) != 2:
-        raise ArgumentError(key, "be a point, or the name of a body and a point of it", where)
-    body: Any = names.get(where[0])
+        point: BodyPoint = where
+        return point
+    body: Any = names.get(where[0]) if len(where) == 2 else None
     if body is None:
-        raise ArgumentError(key, f"name a body of the system ({listed(names)})", where[0])
+        words = f"be a point, or the name of a body of the system ({listed(names)}) and a point of it"
+        raise ArgumentError(key, words, where)
     try:
         return body.at(where[1]) if not isinstance(where[1], str) else BodyPoint(body, _position(body, where[1]))
     except ArgumentError as error:

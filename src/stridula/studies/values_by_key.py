@@ -81,23 +81,32 @@ class Value:
             raise ArgumentError(self.key, f"be free to change: {error.problems[0]}", value) from None
 
 
-def si_tables(source: str | FilePath | xr.Dataset | System, overrides: Mapping[str, Any]) -> dict[str, Any]:
+def is_written(source: Any) -> bool:
+    """Return whether a source is a scenario that is written, unlike a system."""
+    return isinstance(source, (str, FilePath, xr.Dataset))
+
+
+def si_tables(source: Any, overrides: Mapping[str, Any]) -> dict[str, Any]:
     """Return the tables of a scenario or a system in SI, with shared values in each body or contact.
+
+    Parameters
+    ----------
+    source : str, Path, xarray.Dataset or System
+        The scenario, or the system.
+    overrides : mapping
+        Values by key.
 
     Raises
     ------
     ScenarioError
         If the scenario cannot be used.
     """
-    if isinstance(source, System):
-        written = tomllib.loads(scenario_toml(source, (), {"duration": 1.0}))
-    else:
-        written = read_tables(source)
+    written = read_tables(source) if is_written(source) else tomllib.loads(scenario_toml(source, (), {"duration": 1.0}))
     tables, problems = overridden(written, overrides)
     if problems:
         raise ScenarioError(problems)
     # The scenario of a system has numbers in SI, and shares none.
-    return tables if isinstance(source, System) else _with_lists(tables_in_si(tables))
+    return _with_lists(tables_in_si(tables)) if is_written(source) else tables
 
 
 def _with_lists(tables: Any) -> Any:
@@ -119,15 +128,15 @@ def value_of(key: str, tables: dict[str, Any]) -> Value:
     """
     paths = _paths(key, tables)
     found = [outline.look_up(tables, path) for path in paths]
-    if not all(isinstance(one, Real) and not isinstance(one, bool) for one in found):
-        got = brief(next(one for one in found if not isinstance(one, Real) or isinstance(one, bool)))
-        raise ArgumentError("parameters", f"be numbers that are given, and {key} be one", got=got)
+    other = [one for one in found if isinstance(one, bool) or not isinstance(one, Real)]
+    if other:
+        raise ArgumentError("parameters", "be numbers that are given", got=f"{brief(other[0])} for {key}")
     numbers = tuple(float(one) for one in found)
     if not np.mean(numbers):
-        words = f"be other than 0 in {key}, whose size is that of its changes: set a small one in overrides"
-        raise ArgumentError("parameters", words, got="0")
+        words = "be numbers other than 0, whose size is that of their changes: set a small one in overrides"
+        raise ArgumentError("parameters", words, got=f"0 for {key}")
     if outline.is_whole(outline.node_at(paths[0], tables)):
-        raise ArgumentError("parameters", f"change smoothly, and {key} is a whole number", got=brief(found[0]))
+        raise ArgumentError("parameters", "not be whole numbers", got=f"{brief(found[0])} for {key}")
     return Value(key, tuple(paths), numbers, _units(paths[0], tables), tables)
 
 
