@@ -10,6 +10,7 @@ import scipy.linalg
 
 from ..arrays import Array
 from .pencils import Pencil
+from .vibration import ROUND_OFF
 
 # Distance of the shift from the middle of the exponents, relative to that of the nearest other one: each iteration
 # reduces errors by about this factor.
@@ -101,7 +102,11 @@ class _About:
         """Return the vectors of approximate exponents and shapes, without multipliers."""
         one = self.pencil
         moving = shapes * values
-        own = (one.from_velocity @ moving + one.from_displacement @ shapes) / (values - one.state[:, None])
+        rates = values - one.state[:, None]
+        driven = one.from_velocity @ moving + one.from_displacement @ shapes
+        # A state that no motion drives has its own rate as an exponent, with any amplitude.
+        is_own = np.abs(rates) <= ROUND_OFF * np.abs(values)
+        own = np.where(is_own, 1.0, driven / np.where(is_own, 1.0, rates))
         return shapes, moving, own, np.zeros((len(one.held), values.size))
 
     def right(self, vectors: Vectors) -> Vectors:

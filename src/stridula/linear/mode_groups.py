@@ -108,7 +108,8 @@ def group_of(pencil: Pencil, found: Exponents, number: int) -> ModeGroup:
     distance = np.where(there, np.abs(values - exponent), np.inf) / abs(exponent)
     equal = np.flatnonzero(distance <= EQUAL).tolist()
     nearest = int(distance.argmin())
-    members = sorted([number, *equal]) if equal else _near(values, distance, number)
+    # In order, so that a pair is the same for both.
+    members = sorted([number, *equal] if equal else _near(values, distance, number))
     there[members] = False
     others = np.abs(values[there] - values[members].mean()).min(initial=abs(exponent))
     pair = invariant_pair(pencil, values[members].tolist(), _stirred(shapes[:, members]), float(others))

@@ -30,15 +30,15 @@ from .values_by_key import Value, all_values, is_written, si_tables, value_of
 
 # Modes in the result where none grows: those that decay least.
 FEWEST = 5
-# Changes of a parameter, relative to it, at which matrices are differenced, of an error of the fourth order: the second
-# one where the first meets another mesh or another status.
-STEPS = (5e-4, 5e-5)
+# Changes of a parameter, relative to it, at which matrices are differenced, with an error of the fourth order: shorter
+# ones where a longer one meets another mesh or another status, or where matrices bend too much.
+STEPS = (1e-3, 1e-4, 1e-5)
 PLACES = (-2.0, -1.0, 1.0, 2.0)
 SLOPE = (1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0)
 # The fourth difference, with the middle last, vanishes for whatever is smooth.
 KINK = (1.0, -4.0, -4.0, 1.0, 6.0)
 # Largest kink relative to the derivative, beyond round-off of matrices: this many times that of the highest frequency.
-UNEVEN, ROUNDINGS = 1e-6, 100.0
+UNEVEN, ROUNDINGS = 1e-5, 100.0
 Source = str | Path | xr.Dataset | System
 Where = BodyPoint | tuple[str, Any]
 
@@ -65,8 +65,9 @@ def mode_sensitivity(
 
     (Lancaster 1964, Numerische Mathematik 6). The equilibrium is found again for each change of a parameter, so that
     forces, slip velocities, slopes of friction and stiffnesses of contacts follow it. The matrices are differenced at
-    four values within 0.1 % of the parameter: exactly where they are affine in it, as in coefficients of friction or
-    stiffnesses, else to 1e-12, apart from rounding. Derivatives by an added mass are in closed form.
+    four values within 0.2 % of the parameter: exactly where they are affine in it, as in coefficients of friction or
+    stiffnesses, else to 1e-11, apart from the rounding of modes of meshes. Derivatives by an added mass are in closed
+    form.
 
     Modes that merge have derivatives that grow without bound; those of sum and product of both exponents remain
     finite. The change by a finite change of a parameter is that of both modes together.
