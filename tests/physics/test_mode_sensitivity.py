@@ -59,6 +59,16 @@ def test_hoffmann_in_closed_form(friction, turn):
         assert slopes(found, "friction.coefficient")[number] == pytest.approx(slope, rel=1e-9, abs=1e-9)
 
 
+def test_right_vectors_in_place_of_left_ones_fall_short(monkeypatch):
+    """Negative control: matrices with friction are not symmetric."""
+    made, given = drawn(0, space=False)
+    key = "connections.0.stiffness"
+    right = st.mode_sensitivity(made(given), [key], modes=5, status="sliding")
+    monkeypatch.setattr("stridula.linear.invariant_pairs._About.left", lambda self, vectors: self.right(vectors))
+    wrong = st.mode_sensitivity(made(given), [key], modes=5, status="sliding")
+    assert np.abs(slopes(wrong, key) / slopes(right, key) - 1.0).max() > 0.01
+
+
 @pytest.mark.parametrize("friction", [ONSET - 1e-3, ONSET - 1e-9, ONSET, ONSET + 1e-9, ONSET + 1e-3])
 def test_sum_and_product_of_merging_modes_in_closed_form(friction):
     """Sum and product of both exponents follow from trace and determinant of the stiffness, across the merge."""
