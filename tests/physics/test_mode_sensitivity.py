@@ -291,6 +291,20 @@ def test_several_contacts_change_in_proportion():
     whole, left, right = (slopes(found, key) for key in keys)
     share = found.value.values[1:] / found.value.values[0]
     np.testing.assert_allclose(whole, share[0] * left + share[1] * right, rtol=1e-9)
+    listed = st.mode_sensitivity(made(given), ["contacts.friction.coefficient"], modes=5, status="sliding")
+    np.testing.assert_array_equal(slopes(listed, "contacts.friction.coefficient"), whole)
+    with pytest.raises(ValueError, match="key must be a number that an entry of contacts has, got 'contacts.shape'"):
+        st.mode_sensitivity(made(given), ["contacts.shape"], status="sliding")
+
+
+def test_contacts_on_one_track_share_its_speed():
+    """A default key of the speed of all contacts stands for those of each."""
+    found = st.mode_sensitivity("pin-on-disc")
+    names = found.parameter.values.tolist()
+    assert "contacts.surface_velocity" in names
+    assert not any(name.startswith("node") and name.endswith("surface_velocity") for name in names)
+    open_nodes = found.sel(parameter=["node 1.friction.coefficient", "node 3.friction.coefficient"])
+    assert st.what_helps(open_nodes).better.values.tolist() == ["neither"] * 2
 
 
 def test_a_changed_basis_of_modes_is_turned_back():

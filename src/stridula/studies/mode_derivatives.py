@@ -79,7 +79,8 @@ def mode_sensitivity(
     parameters : sequence of str, optional
         Keys of numbers as for `sweep`: a full path such as ``contact.friction.coefficient`` or any unique ending of
         one; those of a system are the keys of its scenario. A key that begins with the name of a contact, a surface
-        or a connection means its own number; ``friction.coefficient`` means those of all contacts. Several numbers
+        or a connection means its own number; ``friction.coefficient`` means those of all contacts, and a list without a
+        number, as in ``contacts.track.velocity`` or ``connections.stiffness``, all of its entries. Several numbers
         change in proportion, and the derivative is by their mean. By default all numbers other than lengths and places
         that are given and not 0.
     masses : mapping, optional

@@ -30,6 +30,8 @@ WORDS = (
     *("young", "density", "mass", "coefficient", "tension"),
     *("tangential_stiffness", "tangential_damping", "surface_velocity", "normal_load", "axial", "transverse"),
 )
+# Speeds of what contacts may have in common.
+SPEEDS = ("track.velocity", "surface_velocity")
 OF_DRIVES = ("x", "y", "z", "velocity", "acceleration")
 STARTS = ("initial velocity", "initial state", "initial equilibrium")
 # Numbers of laws that do not change their slopes in sliding.
@@ -156,9 +158,17 @@ def _keys(tables: dict[str, Any]) -> Iterator[str]:
             yield from (
                 ".".join(("friction", name)) for name in laws[0] if _is_one(tables, (*contacts[0], "friction", name))
             )
+    together = [word for word in SPEEDS if _are_equal(tables, word)]
+    yield from (f"contacts.{word}" for word in together)
     for path, _ in outline.paths(tables):
-        if _is_one(tables, path) and _counts(path, tables):
+        if _is_one(tables, path) and _counts(path, tables) and ".".join(map(str, path[2:])) not in together:
             yield _key(path, tables)
+
+
+def _are_equal(tables: dict[str, Any], word: str) -> bool:
+    """Return whether several contacts have the same number, such as the speed of one track."""
+    numbers = [outline.look_up(one, word.split(".")) for one in tables.get("contacts", ())]
+    return len(numbers) > 1 and numbers[0] is not None and all(one == numbers[0] for one in numbers)
 
 
 def _units(path: Path, tables: dict[str, Any]) -> str:
@@ -207,12 +217,23 @@ def _paths(key: str, tables: dict[str, Any]) -> list[Path]:
     for name, entries in _names(tables).items():
         if key.startswith(f"{name}."):
             return [_below(entry, key[len(name) + 1 :], key, tables) for entry in entries]
-    head = key.partition(".")[0]
+    head, _, rest = key.partition(".")
+    if isinstance(tables.get(head), list) and rest and not rest.partition(".")[0].isdigit():
+        return _of_all(head, rest, key, tables)
     if head in outline.SHARED_BY_CONTACTS:
         return [_below(entry, key, key, tables) for entry in outline.contacts(tables)]
     if head in outline.SHARED and outline.beams(tables):
         return [_below(entry, key, key, tables) for entry in outline.beams(tables)]
     return [find(key, tables)]
+
+
+def _of_all(word: str, rest: str, key: str, tables: dict[str, Any]) -> list[Path]:
+    """Return the places of a key below all entries of a list that have a number there."""
+    places: list[Path] = [(word, number, *rest.split(".")) for number in range(len(tables[word]))]
+    given = [place for place in places if _is_one(tables, place)]
+    if not given:
+        raise ScenarioError([f"key must be a number that an entry of {word} has, got {brief(key)}"])
+    return given
 
 
 def _names(tables: dict[str, Any]) -> dict[str, list[Path]]:
