@@ -293,7 +293,7 @@ def test_several_contacts_change_in_proportion():
     np.testing.assert_allclose(whole, share[0] * left + share[1] * right, rtol=1e-9)
     listed = st.mode_sensitivity(made(given), ["contacts.friction.coefficient"], modes=5, status="sliding")
     np.testing.assert_array_equal(slopes(listed, "contacts.friction.coefficient"), whole)
-    with pytest.raises(ValueError, match="key must be a number that an entry of contacts has, got 'contacts.shape'"):
+    with pytest.raises(ValueError, match="key must be a number that an entry of contacts has"):
         st.mode_sensitivity(made(given), ["contacts.shape"], status="sliding")
 
 
