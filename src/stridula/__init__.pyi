@@ -36,6 +36,7 @@ from .acoustics.wav import write_wav as write_wav
 from .analysis import regime as regime
 from .analysis import worn as worn
 from .analysis.mobilities import mobility as mobility
+from .analysis.mode_effects import what_helps as what_helps
 from .analysis.record_card import RecordCard as RecordCard
 from .analysis.record_card import card as card
 from .analysis.stability import sliding_stability as sliding_stability
@@ -151,6 +152,7 @@ from .studies import check_step as check_step
 from .studies import critical_value as critical_value
 from .studies import ensemble as ensemble
 from .studies import follow_cycle as follow_cycle
+from .studies import mode_sensitivity as mode_sensitivity
 from .studies import orbit_diagram as orbit_diagram
 from .studies import root_loci as root_loci
 from .studies import sensitivity as sensitivity

@@ -86,6 +86,7 @@ def check_coming_from(names: Mapping[str, Any], printed: str) -> None:
 
 def check_maps(names: Mapping[str, Any], printed: str) -> None:
     """The travel in 50 ms falls by 2.8 mm per unit of friction, from 2.1 mm at 0.4."""
+    assert names["table"].parameter.values[0] == "contact.friction.coefficient"
     assert 0.877 < float(names["onset"].value) < 0.878
     assert int(names["counts"].compared) == 12
     assert names["best"].met.values.tolist() == [True, True]
@@ -151,6 +152,6 @@ WRITTEN = {
     "cycles.rst": {"branch.png", "glass.wav"},
     "dynamics.rst": {"basin.png", "orbits.png"},
     "hearing.rst": {"ears.wav", "spectrogram.png", "spectrum.png", "squeal.gif"},
-    "maps.rst": {"map.png", "root-loci.png"},
+    "maps.rst": {"effects.png", "map.png", "root-loci.png"},
     "surveys.rst": {"survey.nc", "survey.png"},
 }

@@ -50,6 +50,7 @@ FEW = {
     "sweep": {"duration": 1e-3},
     "squeal_survey": {"duration": 1e-3},
     "ensemble": {"runs": 2},
+    "mode_sensitivity": {"parameters": ["coefficient"]},
     "calibrate": {"population": 5, "generations": 1, "duration": 1e-3},
 }
 
@@ -143,6 +144,11 @@ def _loci() -> xr.Dataset:
 
 
 @cache
+def _effects() -> xr.Dataset:
+    return st.mode_sensitivity("weak-pressure", ["friction"])
+
+
+@cache
 def _swept() -> xr.Dataset:
     points = st.Grid({"coefficient": [1.0, 1.5], "contact.at": [0.3, 0.4]})
     return st.sweep("squeal", points, ["regime"], duration=0.005)
@@ -186,6 +192,7 @@ THINGS: dict[str, Callable[[], Any]] = {
     "sound": _sound,
     "one sound": lambda: _sound().isel(listener=0),
     "loci": _loci,
+    "effects": _effects,
     "swept": _swept,
     "stability": lambda: st.sliding_stability(_system()),
     "system": _system,
@@ -277,7 +284,9 @@ FITTING: dict[str, tuple[tuple[str, Any], ...]] = {
     "status": _STATUS,
     "limits": _things("thresholds"),
     "figure": _things("figure"),
-    "found": _things("swept"),
+    "found": _things("swept", "effects"),
+    "parameters": _plain(["coefficient"], ["friction"], ["slider.material.young"]),
+    "masses": _plain({"tip": ("slider", "tip")}),
     "loci": _things("loci"),
     "stability": _things("stability"),
     "targets": _things("target"),

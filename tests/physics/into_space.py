@@ -53,6 +53,11 @@ class IntoSpace:
         self.runs += 1
         return st.sliding_stability(self.system(flat)[0], **words)
 
+    def mode_sensitivity(self, flat: System, *args: Any, **words: Any) -> xr.Dataset:
+        """Return the derivatives of the small motions of a system of the plane in space."""
+        self.runs += 1
+        return st.mode_sensitivity(self.system(flat)[0], *args, **words)
+
     def turned(self, components: Any) -> tuple[float, ...]:
         """Return the components in space of a vector of the plane."""
         given = np.asarray(components, dtype=float)

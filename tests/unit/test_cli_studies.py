@@ -110,10 +110,22 @@ def test_stability_reports_an_unchanged_verdict(stridula):
     assert out == "unstable at all 2 values of friction\n"
 
 
+def test_stability_by_parameters_prints_the_largest_effect_first(stridula, tmp_path):
+    keys = ("--by", "slider.damping.rise", "--by", "friction")
+    code, out, err = stridula("stability", "weak-pressure", *keys, "--out", "effects.nc", "--plot", "effects.png")
+    assert (code, err) == (0, "")
+    assert out.startswith("mode at 2830.8 Hz, growth 1181.4 1/s; 10 % more:")
+    assert re.search(r"friction +1\.2 +\+606\.4 +\+10\.33 +lower\b.*slider\.damping\.rise .* raise", out, re.DOTALL)
+    effects = st.load("effects.nc")
+    assert effects.parameter.values.tolist() == ["slider.damping.rise", "friction"]
+    assert effects["d_growth_rate"].dims == ("parameter", "mode")
+    assert (tmp_path / "effects.png").read_bytes().startswith(b"\x89PNG")
+
+
 VARY = ("--vary", "friction=0.5:1:3")
 BAD_STABILITY = [
-    (("--plot", "a.png"), "--plot must be used with --vary, got 'a.png' alone"),
-    (("--out", "a.nc"), "--out must be used with --vary, got 'a.nc' alone"),
+    (("--plot", "a.png"), "--plot must be used with --vary or --by, got 'a.png' alone"),
+    (("--out", "a.nc"), "--out must be used with --vary or --by, got 'a.nc' alone"),
     (("--highest", "9"), "--highest must be used with --vary, got 9.0 alone"),
     (("--set", "frition=1"), "did you mean 'friction'?"),
     (("--status", "slding"), "did you mean 'sliding'?"),
@@ -136,6 +148,12 @@ BAD_STABILITY = [
     (("--vary", "elements=4:6:5"), "slider.elements must be a whole number, got 4.5"),
     (("--vary", "angle=80deg:100deg:3"), "slider.angle must be strictly between"),
     ((*VARY, "--set", "friction=1"), "key must be set or varied, got both for 'friction'"),
+    ((*VARY, "--by", "friction"), "--vary must be left out with --by, got 'friction=0.5:1:3'"),
+    (("--by", "friction", "--highest", "9"), "--highest must be left out with --by, got 9.0"),
+    (("--by", "frition"), "did you mean 'friction'?"),
+    (("--by", "slider.elements"), "parameters must not be whole numbers, got 20 for slider.elements"),
+    (("--by", "contact.tangential_damping"), "be numbers that are given, got None for contact.tangential_damping"),
+    (("--by", "contact.gap", "--set", "contact.gap=0"), "set a small one in overrides, got 0 for contact.gap"),
     ((*VARY, "--highest", "0"), "highest must be above 0, got 0.0"),
     ((*VARY, "--out", "none/a.nc"), "there is no folder 'none'"),
     ((*VARY, "--out", "."), "it is a directory"),

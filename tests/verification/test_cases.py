@@ -12,6 +12,7 @@ import stridula as st
 from stridula.verification import (
     chains,
     clockwork,
+    derivatives,
     falling,
     impacts,
     instabilities,
@@ -72,6 +73,14 @@ def test_points_of_one_mesh_another_friction_and_another_rig_fall_short(monkeypa
     assert {"friction at the start", "its moment at the start"} <= missed(surfaces.spinning())
     monkeypatch.setattr(surfaces, "load_scenario", lambda name: load(name, {"friction": 0.3}))
     assert "frequency" in missed(surfaces.pin_on_disc())
+
+
+def test_derivatives_of_another_spring_at_the_contact_fall_short(monkeypatch):
+    """Negative control: the spring of the closed form is 1e-9 softer than that of the mass."""
+    monkeypatch.setattr(derivatives, "AT_CONTACT", derivatives.AT_CONTACT * (1.0 - 1e-9))
+    short = missed(derivatives.hoffmann_derivatives())
+    assert "friction 0.75: product by friction, real" in short
+    assert "friction 0.9, exponent 0.157 + 1.423i: growth by friction" in short
 
 
 def test_a_slider_with_another_friction_falls_short(monkeypatch):

@@ -352,15 +352,31 @@ def stability(
     highest: Annotated[
         float | None, typer.Option(metavar="HZ", help="With --vary: leave out modes above this frequency.")
     ] = None,
-    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the modes over the parameter.")] = None,
-    out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the modes, as NetCDF.")] = None,
+    by: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY", help="Effect of a parameter on the growing mode, or of all of them; may be repeated."
+        ),
+    ] = None,
+    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw modes over a parameter, or effects.")] = None,
+    out: Annotated[str | None, typer.Option(metavar="FILE", help="Write these, as NetCDF.")] = None,
 ) -> None:
-    """Print the equilibrium and the modes of sliding by linear theory, or where stability changes over a parameter."""
+    """Print equilibrium and modes of sliding by linear theory, where stability changes, or what parameters change."""
     overrides = _pairs(set_ or [])
+    if by:
+        for option, value in (("--vary", vary), ("--highest", highest)):
+            if value is not None:
+                raise ArgumentError(option, "be left out with --by", value)
+        from .effects import print_effects
+        from .stability import statuses, velocities
+
+        print_effects(name, by, overrides, out, plot, status=statuses(status), velocity=velocities(velocity))
+        return
     if vary is None:
         for option, value in (("--plot", plot), ("--out", out), ("--highest", highest)):
             if value is not None:
-                raise ArgumentError(option, "be used with --vary", value, got=f"{value!r} alone")
+                others = "--vary" if option == "--highest" else "--vary or --by"
+                raise ArgumentError(option, f"be used with {others}", value, got=f"{value!r} alone")
         from .stability import print_stability
 
         print_stability(name, overrides, status, velocity)

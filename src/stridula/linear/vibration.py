@@ -69,11 +69,20 @@ class Vibration:
     free: Array
 
 
-def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
+def vibration(structure: Structure, equilibrium: Equilibrium, spread: Array | None = None) -> Vibration:
     """Return the small motions of a system about an equilibrium.
 
     In addition to the terms without load, a contact point shifts along a deflected track: the gap changes with its
     slope, and the contact forces act on other points of it.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    equilibrium : Equilibrium
+        The equilibrium.
+    spread : ndarray, shape (rows, constraints), optional
+        Combinations of rigid rows that are taken as the independent constraints; found if left out.
     """
     stiffness, damping = structure.stiffness.copy(), structure.damping.copy()
     share, passing = equilibrium.sense * (equilibrium.ratio + _rises(structure, equilibrium)), structure.passing
@@ -113,7 +122,7 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
     for matrix, column in zip((stiffness, damping), zip(*joined, strict=True), strict=False):
         _add(matrix, column, -pushes[len(closed) :], held[len(closed) :])
     rigid = rigid_rows(structure, closed, stuck)
-    spread = _independent(held[rigid])
+    spread = _independent(held[rigid]) if spread is None else spread
     held, pushes = spread.T @ held[rigid], spread.T @ pushes[rigid]
     by_state, from_velocity, state = _states(kept := [one for one in answers if one.near.state_by_state], structure)
     moved, owners = (from_velocity, from_velocity @ passing), tuple(one.owner for one in kept)

@@ -9,6 +9,7 @@ from .colours import STATUS_COLOURS as STATUS_COLOURS
 from .directivities import directivity as directivity
 from .dynamics import basin as basin
 from .dynamics import orbit_diagram as orbit_diagram
+from .effects import mode_sensitivity as mode_sensitivity
 from .files import save as save
 from .films import animate as animate
 from .laws import friction as friction

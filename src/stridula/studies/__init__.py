@@ -22,6 +22,7 @@ _HOME = {
     "ensemble": "ensembles",
     "follow_cycle": "branches",
     "mean_and_interval": "ensembles",
+    "mode_sensitivity": "mode_derivatives",
     "orbit_diagram": "orbit_diagrams",
     "root_loci": "loci",
     "sensitivity": "sobol",

@@ -11,6 +11,7 @@ from .ensembles import mean_and_interval as mean_and_interval
 from .ensembles import share_of as share_of
 from .loci import critical_value as critical_value
 from .loci import root_loci as root_loci
+from .mode_derivatives import mode_sensitivity as mode_sensitivity
 from .orbit_diagrams import orbit_diagram as orbit_diagram
 from .points import Grid as Grid
 from .points import LatinHypercube as LatinHypercube

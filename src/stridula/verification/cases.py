@@ -5,6 +5,7 @@ from __future__ import annotations
 from . import (
     chains,
     clockwork,
+    derivatives,
     falling,
     frequencies,
     halved_steps,
@@ -39,6 +40,7 @@ CASES: tuple[Case, ...] = (
     *falling.CASES,
     *instabilities.CASES,
     *stability.CASES,
+    *derivatives.CASES,
     *impacts.CASES,
     *indentation.CASES,
     *linings.CASES,
