@@ -179,9 +179,9 @@ def damping_that_gives(energies):
     energies[layout.DAMPING_LOSS, 60:] -= 1e-3
 
 
-def created_at(energies, dissipative=True):
+def created_at(energies, dissipative=True, passive=True):
     """Return the first sample at which energy was created, or None."""
-    account = Account(np.zeros(layout.ENERGIES), 0.0, 1.0, 0.0, dissipative, True)
+    account = Account(np.zeros(layout.ENERGIES), 0.0, 1.0, 0.0, passive, dissipative, True)
     sample, ended, _ = believed(energies, 0, energies.shape[1], account)
     return sample if ended == layout.ENERGY_CREATED else None
 
@@ -210,6 +210,13 @@ def test_friction_of_a_law_with_state_may_give_back_what_it_stored():
     energies[layout.FRICTION_LOSS, :50] = 1e-3
     assert created_at(energies) == 50
     assert created_at(energies, dissipative=False) is None
+
+
+def test_bristles_under_a_growing_normal_force_may_give_more_than_they_took():
+    energies = np.zeros((layout.ENERGIES, 100))
+    energies[layout.STORED, 50:] = energies[layout.CONTACT_WORK, 50:] = 0.1
+    assert created_at(energies) == 50
+    assert created_at(energies, passive=False) is None
 
 
 def groove(opening, mu=0.0, history=None) -> st.System:

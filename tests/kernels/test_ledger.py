@@ -9,7 +9,7 @@ from stridula._kernels.books.ledger import CONTACT_TOLERANCE, LEDGER_TOLERANCE, 
 from stridula._kernels.layout import columns as at
 
 
-def created(energies, before, initial, largest, of_loads, dissipative, damped_alone):
+def created(energies, before, initial, largest, of_loads, passive, dissipative, damped_alone):
     """Return the first sample at which energy was created, or None; written from the rules."""
     terms = np.abs(energies[: at.DAMPING_LOSS + 1])
     largest_yet = np.maximum(np.maximum.accumulate(terms.max(axis=0)), max(largest, of_loads))
@@ -18,7 +18,7 @@ def created(energies, before, initial, largest, of_loads, dissipative, damped_al
     residual = energies[at.STORED] - initial + energies[at.DAMPING_LOSS] - energies[at.DRIVE_WORK] - work
     given = work - energies[at.CONVECTION_WORK]
     wrong = (np.abs(residual) > scale) | (energies[at.STORED] < -scale)
-    wrong |= given > CONTACT_TOLERANCE * largest_yet + of_loads
+    wrong |= passive & (given > CONTACT_TOLERANCE * largest_yet + of_loads)
     for takes, loss in ((dissipative, at.FRICTION_LOSS), (damped_alone, at.DAMPING_LOSS)):
         if takes:
             wrong |= np.diff(energies[loss], prepend=before[loss]) < -scale
@@ -47,7 +47,7 @@ def test_accepted_samples_are_those_of_plain_numpy(seed):
     energies, initial = ledger(random, 80)
     before = np.zeros(at.ENERGIES)
     largest, of_loads = random.choice([0.0, 1.0, 1e3]), random.choice([0.0, 1e-6])
-    flags = bool(random.integers(2)), bool(random.integers(2))
+    flags = bool(random.integers(2)), bool(random.integers(2)), bool(random.integers(2))
     bad = int(random.integers(80)) if seed % 3 == 0 else 80
     energies[random.integers(at.ENERGIES), bad:] = np.nan
     expected = created(energies[:, :bad], before, initial, largest, of_loads, *flags)
@@ -65,7 +65,7 @@ def test_ledgers_of_both_kinds_are_tried():
     kinds = set()
     for seed in range(60):
         energies, initial = ledger(np.random.default_rng(seed), 80)
-        kinds.add(created(energies, np.zeros(at.ENERGIES), initial, 1.0, 0.0, True, True) is None)
+        kinds.add(created(energies, np.zeros(at.ENERGIES), initial, 1.0, 0.0, True, True, True) is None)
     assert kinds == {True, False}
 
 

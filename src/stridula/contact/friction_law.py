@@ -50,6 +50,8 @@ class FrictionLaw(ABC):
         Whether the internal state stays above zero.
     state_is_vector : bool
         Whether the internal state has a component along each tangent in space.
+    is_passive : bool
+        Whether its contact takes energy on the whole, whatever its motion and normal force.
     linear_in : tuple of str
         Fields in which its coefficient is linear, so that friction may lie between two laws that differ in these.
     """
@@ -61,6 +63,7 @@ class FrictionLaw(ABC):
     state_units: ClassVar[str] = ""
     state_is_positive: ClassVar[bool] = False
     state_is_vector: ClassVar[bool] = False
+    is_passive: ClassVar[bool] = True
     linear_in: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:

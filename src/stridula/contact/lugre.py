@@ -30,7 +30,8 @@ class LuGre(StaticAndKinetic):
     All coefficients are per unit of normal force. The deflection is integrated exactly over a step at constant slip
     velocity and the force is solved for together with the contact, so that the step need not resolve the bristles.
     There is no exact sticking: a contact counts as sticking while its slip speed is below `velocity`. Bristles are
-    reset when a contact opens. `friction_loss` includes the energy stored in the bristles.
+    reset when a contact opens. `friction_loss` includes the energy stored in the bristles. Their stiffness follows the
+    normal force: bristles that are bent under a small force and released under a large one give more than they took.
 
     Parameters
     ----------
@@ -55,6 +56,7 @@ class LuGre(StaticAndKinetic):
     set_valued: ClassVar[bool] = False
     state_units: ClassVar[str] = "m"
     state_is_vector: ClassVar[bool] = True
+    is_passive: ClassVar[bool] = False
     static: Coefficient
     kinetic: PositiveRatio
     velocity: Speed

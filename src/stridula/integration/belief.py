@@ -47,6 +47,7 @@ class Belief:
         self.last_energies = energies.copy()
         self.largest_energy = max(largest_energy, float(np.abs(energies[: at.DAMPING_LOSS + 1]).max()))
         self.energy_of_loads = blocks.modes.energy_of_loads()
+        self.passive = all(contact.law.is_passive for contact in system.contacts)
         self.dissipative = not any(contact.law.has_state for contact in system.contacts)
         self.damped_alone = not arrays.coupled
 
@@ -78,6 +79,7 @@ class Belief:
                 self.initial_energy,
                 self.largest_energy,
                 self.energy_of_loads,
+                self.passive,
                 self.dissipative,
                 self.damped_alone,
             ),
