@@ -4,8 +4,8 @@ A lining, from the bench to the squeal
 
 Friction measured over speed and temperature, the temperatures at which a brake squeals, and a stop through them.
 
-The bench gives :download:`lining.csv </_generated/examples/gallery/lining.csv>`: the lining grips best when it is warm, and
-fades when it is hot. The brake is the smallest that squeals by mode coupling, after Hoffmann, Fischer, Allgaier and
+The bench gives :download:`lining.csv </_generated/examples/gallery/lining.csv>`: the lining grips best when it is warm,
+and fades when it is hot. The brake is the smallest that squeals by mode coupling, after Hoffmann, Fischer, Allgaier and
 Gaul (2002): a pad on two inclined springs, pressed on a surface through the stiffness of its lining.
 """
 
