@@ -40,12 +40,12 @@ class OverStep(NamedTuple):
 
 @dataclass(frozen=True)
 class HeatedLayers:
-    """Layers under a contact that friction heats, one behind the other, up to eight; the first is the one that rubs.
+    """Layers under a contact that friction heats.
 
-    With the heat capacities C, the temperatures T, the power ``P = |tangential force| |slip velocity|`` of friction and
-    conductances G to the next layer, the last of which leads to the surroundings, it is ``C[0] T[0]' = share P -
-    G[0] (T[0] - T[1])``, and so on to ``C[n] T[n]' = G[n-1] (T[n-1] - T[n]) - cooling (T[n] - ambient)``. One layer is
-    a body of one temperature.
+    They lie one behind the other, up to eight; the first is the one that rubs. With the heat capacities C, the
+    temperatures T, the power ``P = |tangential force| |slip velocity|`` of friction and conductances G to the next
+    layer, the last of which leads to the surroundings, it is ``C[0] T[0]' = share P - G[0] (T[0] - T[1])``, and so on
+    to ``C[n] T[n]' = G[n-1] (T[n-1] - T[n]) - cooling (T[n] - ambient)``. One layer is a body of one temperature.
 
     Parameters
     ----------
@@ -204,10 +204,10 @@ class HeatedLayers:
 
 @dataclass(frozen=True)
 class TemperatureHistory:
-    """Temperature of a contact over time, such as measured by a thermocouple; straight between the given times.
+    """Temperature of a contact over time, as measured.
 
-    Before the first and after the last time it is constant. The time is that since the start; a record that is
-    continued goes on from its end.
+    It is straight between the given times, and constant before the first and after the last. The time is that since the
+    start; a record that is continued goes on from its end.
 
     Parameters
     ----------

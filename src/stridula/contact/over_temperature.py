@@ -24,11 +24,11 @@ NO_TEMPERATURE = "none; use law.at(temperature)"
 
 @dataclass(frozen=True)
 class FrictionOverTemperature(FrictionLaw):
-    """Friction given at some temperatures, such as that of a lining which fades; between them on straight lines.
+    """Friction given at some temperatures.
 
-    Below the first and above the last temperature it is that of these. A contact takes it at its own temperature, which
-    follows from its `heating`: `HeatedLayers` or a `TemperatureHistory`. Linear theory takes it at the temperature at
-    the start.
+    Between the temperatures it lies on straight lines; below the first and above the last it is that of these. A
+    contact takes it at its own temperature, which follows from its `heating`: `HeatedLayers` or a `TemperatureHistory`.
+    Linear theory takes it at the temperature at the start.
 
     Parameters
     ----------
