@@ -12,7 +12,7 @@ NEITHER = "neither"
 
 
 def what_helps(found: xr.Dataset, mode: int | None = None) -> xr.Dataset:
-    """Return the derivatives of a mode with the parameter that changes its growth most first.
+    """Return the derivatives of a mode, that which changes its growth most first.
 
     Parameters
     ----------

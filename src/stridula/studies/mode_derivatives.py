@@ -56,7 +56,7 @@ def mode_sensitivity(
     velocity: Velocity | None = None,
     time: float | None = None,
 ) -> xr.Dataset:
-    """Return the derivatives of frequency and growth rate of modes of sliding by parameters of the system.
+    """Return the derivatives of modes of sliding by parameters of the system.
 
     With the right and left vectors x and y of an exponent s of the small motions ``B x' = A x`` of
     `sliding_stability`, constraints included::
