@@ -8,7 +8,6 @@ from typing import ClassVar
 import numpy as np
 
 from ..arrays import Array
-from .curves import Curve
 from .friction_law import CURVE, FrictionLaw
 from .linearised import Linearised
 
@@ -51,17 +50,6 @@ class Between(FrictionLaw):
     def kernel_code(self) -> str:
         """Name of its constant in the layout of the march."""
         return self.first.kernel_code
-
-    @property
-    def curve(self) -> Curve:
-        """The coefficient in sliding as a curve in pieces."""
-        first, last = self.first.curve, self.last.curve
-        return Curve(
-            first.speed,
-            self._on_line(first.coefficients, last.coefficients),
-            self._on_line(first.bend, last.bend),
-            float(self._on_line(first.end_slope, last.end_slope)),
-        )
 
     def parameters(self) -> dict[str, float]:
         """Return the parameters of the law in the march."""

@@ -229,6 +229,13 @@ class Run:
             names, points = surfaces.names, ()
         return PlainRecord(self._time(), variables, names, self._attributes(False, {}), points)
 
+    @property
+    def _shown(self) -> tuple[Sequence[str], Sequence[int]]:
+        """Names of the rows of the record of contacts, and the number of a contact that each represents."""
+        if self.surfaces is not None:
+            return self.surfaces.names, self.surfaces.shown
+        return self.system.contact_names, range(len(self.system.contacts))
+
     def _notes_of_contacts(self) -> list[str]:
         """Return notes if nothing pressed, as under a load that pulls, and on slips beyond the measured friction."""
         if "normal_force" not in self.wanted:
@@ -243,10 +250,8 @@ class Run:
 
     def _notes_of_speeds(self, pressed: Array) -> list[str]:
         """Return a note on what slid farthest beyond the speeds of its measured friction, faces as a whole."""
-        system, surfaces = self.system, self.surfaces
-        names = system.contact_names if surfaces is None else surfaces.names
-        numbers = range(len(names)) if surfaces is None else surfaces.shown
-        measured = np.array([system.contacts[number].friction.fastest for number in numbers])
+        names, numbers = self._shown
+        measured = np.array([self.system.contacts[number].friction.fastest for number in numbers])
         if not pressed.size or not np.isfinite(measured).any():
             return []
         columns = [at.SLIP_VELOCITY, *([at.SLIP_VELOCITY_B] if self.system.has_two_tangents else [])]
@@ -262,10 +267,11 @@ class Run:
 
     def _notes_of_temperatures(self) -> list[str]:
         """Return a note on the contact farthest outside the temperatures of its measured friction."""
-        numbers = list(range(len(self.system.contacts)) if self.surfaces is None else self.surfaces.shown)
-        names = self.system.contact_names if self.surfaces is None else self.surfaces.names
+        if "temperature" not in self.wanted:
+            # The row has no values.
+            return []
         found: list[tuple[float, str]] = []
-        for name, number, own in zip(names, numbers, self.contact_record[at.HOT, :, : self.done], strict=False):
+        for name, number, own in zip(*self._shown, self.contact_record[at.HOT, :, : self.done], strict=True):
             given = [temperature for temperature, _ in self.system.contacts[number].friction.at_temperatures]
             if not given or not own.size:
                 continue
@@ -282,11 +288,9 @@ class Run:
 
     def _notes_of_profiles(self) -> list[str]:
         """Return notes on tips that passed the waves of a profile in few steps, or left it."""
-        numbers = list(range(len(self.arrays.contacts)) if self.surfaces is None else self.surfaces.shown)
-        names = self.system.contact_names if self.surfaces is None else self.surfaces.names
         slips = self.contact_record[at.SLIP_VELOCITY, :, : self.done]
         found: list[str] = []
-        for name, number, own in zip(names, numbers, slips, strict=False):
+        for name, number, own in zip(*self._shown, slips, strict=True):
             profile = self.arrays.contacts[number].profile
             if profile is not None:
                 found += notes_of_passage(name, profile, self.places[number], own, self.timing.step, self._time())

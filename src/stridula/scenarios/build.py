@@ -280,7 +280,8 @@ class Builder:
     def _of_contact(self, path: Place, table: Tables) -> dict[str, Any]:
         """Remove friction, stiffness and heating from the table of a contact, and return them built."""
         heated = table.get("heating") is not None
-        found = self._friction(path, table) | self._stiffness(path, table) | self._heating(path, table)
+        found = self._friction(path, table) | self._of_kind("stiffness", STIFFNESS, path, table)
+        found |= self._of_kind("heating", HEATED, path, table)
         if heated and "heating" not in found:
             # Friction would ask for the heating, whose problem is known.
             found.pop("friction", None)
@@ -303,24 +304,14 @@ class Builder:
             return made_or_read(FRICTIONS[table["law"]], {key: value for key, value in table.items() if key != "law"})
         return None
 
-    def _heating(self, path: Place, table: Tables) -> dict[str, Any]:
-        """Remove the heating from the table of a contact, and return it built."""
-        given = table.pop("heating", None)
-        if given is None:
-            return {}
-        with self._within(*path, "heating"):
-            values = {name: value for name, value in given.items() if name != "kind" and value is not None}
-            return {"heating": HEATED[given["kind"]](**values)}
-        return {}
-
-    def _stiffness(self, path: Place, table: Tables) -> dict[str, Any]:
-        """Remove the stiffness from the table of a contact, and return it built."""
-        given = table.pop("stiffness", None)
+    def _of_kind(self, name: str, kinds: dict[str, Callable[..., Any]], path: Place, table: Tables) -> dict[str, Any]:
+        """Remove a stiffness or a heating from the table of a contact, and return it built, or the number given."""
+        given = table.pop(name, None)
         if not isinstance(given, dict):
-            return {} if given is None else {"stiffness": given}
-        values = {name: value for name, value in given.items() if name != "kind"}
-        with self._within(*path, "stiffness"):
-            return {"stiffness": STIFFNESS[given["kind"]](**values)}
+            return {} if given is None else {name: given}
+        values = {key: value for key, value in given.items() if key != "kind" and value is not None}
+        with self._within(*path, name):
+            return {name: kinds[given["kind"]](**values)}
         return {}
 
     def _contact(self, number: int, table: Tables) -> Any:

@@ -1,13 +1,20 @@
 """Temperature of contacts: heat of friction in layers, or a given history; the law of friction follows it."""
 
 from ..contact.lanewise import lanewise
-from ..lanes.compiled import called
+from ..contact.pieces import piece_at
+from ..lanes.compiled import called, strict_pasted
 from ..lanes.operations import Number, Runs, add, held, hold
 from ..layout import columns as at
 from ..layout.contact_values import HeatedLaw
 from ..layout.heated_laws import AT, FIRST_TEMPERATURE, TIMES, WIDTH
 from ..layout.laws import STATIC
 from ..layout.parts import Parts
+
+
+@strict_pasted
+def share_between(low: Number, high: Number, value: Number) -> Number:
+    """Return the share of the way between two numbers at which a value lies, 0 or 1 beyond them."""
+    return min(max((value - low) / (high - low), 0.0), 1.0)
 
 
 @lanewise(0.0)
@@ -18,15 +25,10 @@ def temperature_at(first: Number, time: Number, law: HeatedLaw) -> Number:
     if count == 0:
         return first
     times = FIRST_TEMPERATURE + int(given[row, AT]) * (1 + int(given[row, WIDTH]))
-    temperatures = times + count
-    if time <= given[row, times]:
-        return given[row, temperatures]
-    for k in range(1, count):
-        begin, end = given[row, times + k - 1], given[row, times + k]
-        if time < end:
-            rise = given[row, temperatures + k] - given[row, temperatures + k - 1]
-            return given[row, temperatures + k - 1] + (time - begin) / (end - begin) * rise
-    return given[row, temperatures + count - 1]
+    place = times + piece_at(given, row, times, count - 1, time)
+    share = share_between(given[row, place], given[row, place + 1], time)
+    begin, end = given[row, place + count], given[row, place + count + 1]
+    return begin + share * (end - begin)
 
 
 @lanewise(0.0)
@@ -40,13 +42,11 @@ def act_at(temperature: Number, law: HeatedLaw) -> Number:
     count, width = int(given[row, AT]), int(given[row, WIDTH])
     if count == 0:
         return acting[row, STATIC]
-    below, share = 0, 0.0
-    for k in range(count - 1):
-        low, high = given[row, FIRST_TEMPERATURE + k], given[row, FIRST_TEMPERATURE + k + 1]
-        if temperature > low:
-            below, share = k, min((temperature - low) / (high - low), 1.0)
+    below = piece_at(given, row, FIRST_TEMPERATURE, count - 1, temperature)
+    place = FIRST_TEMPERATURE + below
+    share = share_between(given[row, place], given[row, place + 1], temperature)
     first = FIRST_TEMPERATURE + count + below * width
-    after = first + width if count > 1 else first
+    after = first + width
     for k in range(width):
         # Numbers that do not depend on the temperature, such as those of pieces, stay exact.
         acting[row, k] = given[row, first + k] + share * (given[row, after + k] - given[row, first + k])
