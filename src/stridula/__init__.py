@@ -64,7 +64,7 @@ _HOME = {
         "random_field",
     ),
     "checks": ("ArgumentError",),
-    "connections": ("CubicSpring", "Dashpot", "Spring", "TabulatedSpring"),
+    "connections": ("Bushing", "CubicSpring", "Dashpot", "RigidJoint", "Spring", "TabulatedSpring"),
     "doubtful": ("DoubtfulValue",),
     "drives": ("Force", "Gravity", "ImposedVelocity", "InitialEquilibrium", "InitialState", "InitialVelocity"),
     "histories": ("Constant", "Harmonic", "Ramp", "Sampled"),

@@ -70,8 +70,10 @@ from .bodies import SolidBody as SolidBody
 from .bodies import SolidMesh as SolidMesh
 from .bodies import read_parts as read_parts
 from .checks import ArgumentError as ArgumentError
+from .connections import Bushing as Bushing
 from .connections import CubicSpring as CubicSpring
 from .connections import Dashpot as Dashpot
+from .connections import RigidJoint as RigidJoint
 from .connections import Spring as Spring
 from .connections import TabulatedSpring as TabulatedSpring
 from .contact import Coulomb as Coulomb

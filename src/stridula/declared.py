@@ -184,6 +184,17 @@ class Text:
 
 
 @dataclass(frozen=True)
+class Switch:
+    """True or False."""
+
+    def check(self, name: str, value: Any) -> bool:
+        """Return a value if it is true or false."""
+        if not isinstance(value, bool | np.bool_):
+            raise ArgumentError(name, "be True or False", value)
+        return bool(value)
+
+
+@dataclass(frozen=True)
 class Own:
     """A field that the description checks itself.
 
@@ -200,9 +211,9 @@ class Own:
         return value
 
 
-Kind = Number | Choice | Each | OneOrEach | NumberOrWord | Way | Whole | Text | Own
+Kind = Number | Choice | Each | OneOrEach | NumberOrWord | Way | Whole | Text | Switch | Own
 # Kinds whose checked value replaces the given one: sequences become tuples, and NumPy numbers become Python numbers.
-_KEPT = (Each, OneOrEach, NumberOrWord, Way)
+_KEPT = (Each, OneOrEach, NumberOrWord, Way, Switch)
 
 
 @dataclass(frozen=True)
@@ -213,7 +224,7 @@ class Declared:
     ----------
     name : str
         Name.
-    kind : Number, Choice, Each, OneOrEach, NumberOrWord, Way, Whole, Text or Own
+    kind : Number, Choice, Each, OneOrEach, NumberOrWord, Way, Whole, Text, Switch or Own
         Allowed values.
     is_optional : bool
         Whether it may also be None.

@@ -11,12 +11,13 @@ from typing import Any, TypeVar
 import numpy as np
 
 from .checks import ArgumentError, counted, instance, listed
-from .connections import CONNECTIONS, Connection, ends, unit
+from .connections import CONNECTIONS, Connection, ends
 from .contact import PointContact, SurfaceContact, SurfacePoints
 from .contact.surface_points import surfaces_among
 from .doubtful import doubts_of_gap, warn_of
 from .drives import DRIVES, Drive, ImposedVelocity, InitialEquilibrium
 from .system_card import CLOSED, card_of, connection_words, lines_of
+from .system_connections import check_connections
 
 T = TypeVar("T")
 PLACES = (PointContact, SurfaceContact)
@@ -32,8 +33,8 @@ class System:
         Contacts between the bodies. The first one defines the slider (its tip's body) and the track.
     drives : sequence of Force, ImposedVelocity, Gravity, InitialVelocity, InitialState or InitialEquilibrium, optional
         Loads, prescribed motion and initial conditions.
-    connections : sequence of Spring, Dashpot, CubicSpring or TabulatedSpring, optional
-        Springs and dashpots between bodies.
+    connections : sequence of Spring, Dashpot, CubicSpring, TabulatedSpring, Bushing or RigidJoint, optional
+        Springs, dashpots, mounts and joints between bodies.
 
     Raises
     ------
@@ -57,7 +58,7 @@ class System:
         for number, drive in enumerate(self.drives):
             self._check_body(f"drives[{number}]", drive)
         self._check_imposed()
-        self._check_turning()
+        check_connections(self)
         if len(self._of_kind(InitialEquilibrium)) > 1:
             raise ArgumentError(
                 "drives", "hold at most one InitialEquilibrium", self.drives, got=len(self._of_kind(InitialEquilibrium))
@@ -207,14 +208,6 @@ class System:
                         got=f"{self.body_name(other)!r} without",
                     )
 
-    def _check_turning(self) -> None:
-        for number, connection in enumerate(self.connections):
-            for point in ends(connection):
-                turning = getattr(point.body, "turning", None)
-                if getattr(turning, "velocity", turning):
-                    name = self.body_name(point.body)
-                    raise ArgumentError(f"connections[{number}]", "not act on a body that turns", got=f"one to {name}")
-
     def _check_imposed(self) -> None:
         imposed = self._of_kind(ImposedVelocity)
         if len(imposed) > 1:
@@ -229,13 +222,6 @@ class System:
                 )
             if beam.tip_support != "free":
                 raise ArgumentError("tip_support", "be free under an imposed velocity", beam.tip_support)
-            for number, connection in enumerate(self.connections):
-                if unit(connection)[0] and any(point.body == beam for point in ends(connection)):
-                    raise ArgumentError(
-                        f"connections[{number}]",
-                        "not act along x on a body under an imposed velocity, which prescribes its x; "
-                        f"got direction {connection.direction!r}",
-                    )
 
     def _repr_html_(self) -> str:
         """Return a card with a drawing of its bodies and a list of its parts, without a long search for modes."""

@@ -31,6 +31,17 @@ MAKERS = {
         "second",
         [ONE, 0.1, ONE.centre],
     ),
+    "RigidJoint.axes": (lambda v: st.RigidJoint(ONE.centre, axes=v), "axes", ["w", (), 1.0, None]),
+    "RigidJoint.rotations": (lambda v: st.RigidJoint(ONE.centre, rotations=v), "rotations", [1, "x", None]),
+    "RigidJoint.second": (lambda v: st.RigidJoint(ONE.centre, v), "second", [ONE, ONE.centre]),
+    **{
+        f"Bushing.{name}": (
+            lambda v, name=name: st.Bushing(ONE.centre, **{"stiffness": (1.0, 1.0, 0.0), name: v}),
+            name,
+            [3.0, "ab", None],
+        )
+        for name in ("stiffness", "damping", "rotational_stiffness", "rotational_damping")
+    },
     "TabulatedSpring.direction": (
         lambda v: st.TabulatedSpring(ONE.centre, displacement=[0.0, 1.0], force=[0.0, 1.0], direction=v),
         "direction",
@@ -93,6 +104,23 @@ def test_tables_of_springs_are_checked(displacement, force, words):
         st.TabulatedSpring(ONE.centre, displacement=displacement, force=force)
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ({"stiffness": (1.0, 2.0)}, r"^stiffness must be three numbers, for x, y and z, got 2"),
+        ({"damping": (1.0, -1.0, 0.0)}, r"^damping\[1\] must be 0 or above, got -1.0"),
+        ({"rotational_damping": (1.0, 0.0, NAN)}, r"^rotational_damping\[2\] must be finite, got nan"),
+        (
+            {"stiffness": (0.0, 0.0, 0.0)},
+            r"^stiffness must have a number above 0, or the damping, got \(0.0, 0.0, 0.0\)",
+        ),
+    ],
+)
+def test_bushings_are_checked(words, said):
+    with pytest.raises(ValueError, match=said):
+        st.Bushing(ONE.centre, **{"stiffness": (1.0, 1.0, 1.0)} | words)
+
+
 def test_a_beam_track_lies_flat():
     with pytest.raises(ValueError, match=r"^inclination must be 0 on a ModalBeam, got 0.1"):
         st.PointContact(ROD.tip, BAR, at=0.2, inclination=0.1)
@@ -118,9 +146,8 @@ def test_lists_of_systems():
     for value in (None, spring, "spring", 3):
         with pytest.raises(ValueError, match=r"^connections must be a list of connections, got "):
             st.System(contact, (), value)
-    with pytest.raises(
-        ValueError, match=r"^connections\[0\] must be a Spring or Dashpot or CubicSpring or TabulatedSpring, got "
-    ):
+    kinds = "Spring or Dashpot or CubicSpring or TabulatedSpring or Bushing or RigidJoint"
+    with pytest.raises(ValueError, match=rf"^connections\[0\] must be a {kinds}, got "):
         st.System(contact, (), [contact])
     with pytest.raises(ValueError, match=r"^contact must hold at least one PointContact, got none"):
         st.System([])

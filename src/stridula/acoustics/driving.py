@@ -12,6 +12,7 @@ import xarray as xr
 from ..arrays import Array
 from ..bodies.paths import Path, Waves
 from ..checks import ArgumentError, listed
+from ..connections import held_motions
 from ..lowering import Assembly, assemble
 from ..records.by_point import by_point
 from ..records.changes import check_one_system
@@ -128,6 +129,9 @@ def driving(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = None
     flat, samples = assemble(system), normal.shape[1]
     if flat.springs.bends:
         raise ArgumentError("system", "have linear springs, from whose forces its motion follows", got="nonlinear ones")
+    if any(map(held_motions, system.connections)):
+        words = "have no rigid joint, whose forces are in no record: stiff springs may take its place"
+        raise ArgumentError("system", words, got="one")
     if bodies is not None:
         flat = _only(flat, [system.body_name(body) for body in bodies])
     if len(normal) != len(system.contacts):
@@ -180,6 +184,8 @@ def _only(flat: Assembly, names: Sequence[str]) -> Assembly:
         angular_frequency=flat.angular_frequency[kept],
         damping_rate=flat.damping_rate[kept],
         massless=flat.massless[kept],
+        shapes_of_bodies=flat.shapes_of_bodies[kept],
+        rigid=flat.rigid[kept],
         lumped=flat.lumped[kept],
         stiffness=flat.stiffness[:coupled, :coupled],
         dissipation=flat.dissipation[:coupled, :coupled],

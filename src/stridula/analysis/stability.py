@@ -155,7 +155,7 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
     system = structure.system
     values, shapes = found.values, found.shapes
     size = np.abs(values)
-    kinetic = structure.mass[:, None] * np.abs(shapes) ** 2
+    kinetic = _kinetic(structure, shapes)
     if not structure.mass.all():
         kinetic /= np.where(shapes.any(axis=0), kinetic.sum(axis=0), 1.0)
     spans = structure.arrays.spans
@@ -211,6 +211,14 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
         )
     attributes["notes"] = "; ".join(notes)
     return xr.Dataset(data, coordinates, attributes)
+
+
+def _kinetic(structure: Structure, shapes: Array) -> Array:
+    """Return twice the kinetic energy of each coordinate of the bodies for modes, up to a factor of each mode."""
+    arrays, moved = structure.arrays, shapes.copy()
+    joined = len(arrays.blend)
+    moved[:joined] = arrays.blend @ shapes[:joined]
+    return np.where(arrays.shapes_of_bodies, 0.0, 1.0)[:, None] * np.abs(moved) ** 2
 
 
 def _bodies_of_coordinates(structure: Structure) -> Array:

@@ -1,29 +1,36 @@
-"""Connections between bodies: springs, linear and not, and dashpots."""
+"""Connections between bodies: springs, linear and not, dashpots, bushings and rigid joints."""
 
 from __future__ import annotations
 
 from ..arrays import Array
 from ..bodies import BodyPoint
 from ..histories import History
+from .elements import elements_of, held_motions, turns
 from .ends import ends, unit
 from .linear import Dashpot, Spring
 from .nonlinear import CubicSpring, NonlinearSpring, TabulatedSpring
+from .rigid import Bushing, RigidJoint
 
 __all__ = [
     "CONNECTIONS",
+    "Bushing",
     "Connection",
     "CubicSpring",
     "Dashpot",
     "NonlinearSpring",
+    "RigidJoint",
     "Spring",
     "TabulatedSpring",
+    "elements_of",
     "ends",
+    "held_motions",
     "pushes",
+    "turns",
     "unit",
 ]
 
-Connection = Spring | Dashpot | NonlinearSpring
-CONNECTIONS = (Spring, Dashpot, CubicSpring, TabulatedSpring)
+Connection = Spring | Dashpot | NonlinearSpring | Bushing | RigidJoint
+CONNECTIONS = (Spring, Dashpot, CubicSpring, TabulatedSpring, Bushing, RigidJoint)
 
 
 def pushes(connection: Connection) -> list[tuple[History, BodyPoint, Array]]:

@@ -10,7 +10,7 @@ import scipy.linalg
 
 from ..arrays import Array
 from ..bodies import BodyPoint
-from ..connections import ends
+from ..connections import ends, held_motions
 from ..lowering.coordinates import Coordinates
 from .structure import Structure
 from .vibration import Vibration
@@ -117,7 +117,12 @@ def _alike(structure: Structure) -> Iterator[Array]:
     system, massless = structure.system, structure.mass == 0.0
     joined = len(structure.arrays.blend)
     yield np.flatnonzero(massless[:joined])
-    for body in system.bodies:
+    # A joint turns the modes of its bodies into each other in an arbitrary way.
+    mixed = {point.body for one in filter(held_motions, system.connections) for point in ends(one)}
+    if mixed:
+        numbers = [np.arange(*structure.arrays.spans[system.body_name(body)]) for body in mixed]
+        yield np.array([k for k in np.sort(np.concatenate(numbers)) if not massless[k]])
+    for body in (one for one in system.bodies if one not in mixed):
         first, end = structure.arrays.spans[system.body_name(body)]
         modes = body.modes(system.is_held(body))
         if first >= joined:

@@ -417,10 +417,7 @@ def _along_the_slip(rates: Array) -> tuple[Array, Array]:
 
 
 def _rigid_motions(structure: Structure) -> Array:
-    system, spans = structure.system, structure.arrays.spans
-    rigid = np.zeros(structure.mode_count, dtype=bool)
-    for body in system.bodies:
-        rigid[slice(*spans[system.body_name(body)])] = body.modes(system.is_held(body)).angular_frequency == 0.0
+    rigid = structure.arrays.rigid
     motions = np.eye(structure.mode_count)[:, rigid]
     if not rigid.any():
         return motions

@@ -32,7 +32,11 @@ class Assembly:
     angular_frequency, damping_rate : ndarray, shape (modes,)
         Undamped angular frequencies w [rad/s] and ``2 zeta w`` [1/s]; zero for coupled modes.
     massless : ndarray of bool, shape (modes,)
-        Mask of the residual shapes, of unit stiffness and no mass.
+        Mask of the residual shapes, of unit stiffness and no mass, and of coordinates that move nothing.
+    shapes_of_bodies : ndarray of bool, shape (modes,)
+        Mask of the residual shapes among the coordinates of the bodies, which rigid joints mix.
+    rigid : ndarray of bool, shape (modes,)
+        Mask of the rigid motions of the bodies, one by one or joined by rigid joints.
     lumped : ndarray of bool, shape (modes,)
         Mask of the motions of lumped bodies, and of the rigid motions of others.
     stiffness, dissipation : ndarray, shape (coupled, coupled)
@@ -59,7 +63,8 @@ class Assembly:
     spans : dict
         First mode of each body and end of its range, by the body's name.
     blend : ndarray, shape (joined, joined)
-        Matrix from the first coordinates to those of joined bodies with residual shapes at connections; else empty.
+        Matrix from the first coordinates to those of joined bodies, if they have residual shapes or rigid joints; else
+        empty.
     turning : tuple of TurningModes
         Bodies that turn, or round which contacts move.
     """
@@ -67,6 +72,8 @@ class Assembly:
     angular_frequency: Array
     damping_rate: Array
     massless: Array
+    shapes_of_bodies: Array
+    rigid: Array
     lumped: Array
     stiffness: Array
     dissipation: Array
@@ -134,6 +141,8 @@ def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:
         angular_frequency=angular,
         damping_rate=rate,
         massless=massless,
+        shapes_of_bodies=coordinates.shapes_of_bodies,
+        rigid=coordinates.rigid,
         lumped=coordinates.lumped,
         stiffness=stiffness[:size, :size],
         dissipation=dissipation[:size, :size],
@@ -213,4 +222,4 @@ def _start(system: System, coordinates: Coordinates) -> tuple[Array, Array]:
         for name, given in drive.vectors.items():
             values = {"displacement": position, "velocity": velocity}[name]
             values += coordinates.full(drive.acted_on, drive.acted_on.modal_coordinates(given))
-    return position, velocity
+    return coordinates.start(position), coordinates.start(velocity)

@@ -11,6 +11,7 @@ import numpy as np
 from .._kernels.layout import columns as at
 from ..arrays import Array
 from ..bodies import AxisymmetricBody, BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate
+from ..connections import held_motions
 from ..contact import PointContact, Profile
 from ..records.state import State
 from ..system import System
@@ -49,6 +50,7 @@ class Before:
         return (
             (before.imposed_velocity is None) == (system.imposed_velocity is None)
             and before.connections == system.connections
+            and (not any(map(held_motions, system.connections)) or self.has_modes_of(system))
             and len(before.contacts) == len(system.contacts)
             and all(_is_like_contact(*pair) for pair in zip(before.contacts, system.contacts, strict=True))
             and len(before.bodies) == len(system.bodies)

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arrays import Array
 from ..bodies import BodyPoint
 from ..bodies.modes import Modes
-from ..connections import ends, unit
+from ..checks import ArgumentError
+from ..connections import ends, held_motions
+from ..connections.elements import Motion, elements_of
 from ..ordinary import check_coupled_count
 from ..system import System
+from .joints import JointModes, joint_modes
 
+# Largest difference of a start from the motion that a rigid joint allows, relative to it.
+APART = 1e-9
 # Relative size of off-diagonal terms below which modes are not coupled.
 UNCOUPLED = 1e-13
 
@@ -96,6 +101,26 @@ class Coordinates:
         out[..., :size] = numbers @ self.blend[first:end]
         return out
 
+    def start(self, moved: Array) -> Array:
+        """Return coordinates of the bodies at the start as those of the march, shape (modes,).
+
+        Raises
+        ------
+        ValueError
+            If a rigid joint does not allow them.
+        """
+        found = moved.copy()
+        for numbers, modes in self.joints:
+            found[numbers] = (
+                modes.blend[~self.shapes_of_bodies[numbers]].T @ moved[numbers][~self.shapes_of_bodies[numbers]]
+            )
+            found[numbers] *= ~modes.massless
+            back = modes.blend @ found[numbers] - moved[numbers]
+            if np.linalg.norm(back[~self.shapes_of_bodies[numbers]]) > APART * np.linalg.norm(moved[numbers]):
+                words = "move bodies with a rigid joint together at the start, so that their joined points do not part"
+                raise ArgumentError("drives", words, got="a motion of one against the other")
+        return found
+
     def trace(self, point: BodyPoint) -> Array:
         """Return the rows of the world displacement at a point, shape (3, modes)."""
         body: Any = point.body
@@ -105,19 +130,63 @@ class Coordinates:
         """Return the drive of the modes by a uniform acceleration of a body along x, y and z, shape (3, modes)."""
         return _in_space(self.blended(body, self.modes(body).translation))
 
+    def motion(self, point: BodyPoint, motion: Motion) -> Array:
+        """Return the row of a displacement or rotation at a point on the coordinates of the bodies, shape (modes,)."""
+        if not motion.turns:
+            return motion.way @ self.body_trace(point)
+        body: Any = point.body
+        rows = body.rotation(point.position, self.system.is_held(body))
+        return motion.way @ self.full(body, rows)
+
+    @cached_property
+    def joints(self) -> tuple[tuple[Array, JointModes], ...]:
+        """Numbers of the coordinates of bodies that rigid joints join, with their natural modes."""
+        found = []
+        for group in _grouped(self.system):
+            bodies = [body for body in self.joined if body in group.bodies]
+            numbers = np.concatenate([np.arange(*self.spans[body]) for body in bodies])
+            rows = [self.between(one, motion) for one in group.joints for motion in held_motions(one)]
+            squared = np.concatenate([self.modes(body).stiffness for body in bodies])
+            massless = np.concatenate([self.modes(body).massless for body in bodies])
+            found.append((numbers, joint_modes(np.array(rows)[:, numbers], squared, massless)))
+        return tuple(found)
+
+    def between(self, connection: Any, motion: Motion) -> Array:
+        """Return the row of a motion of the first end of a connection relative to the other, shape (modes,)."""
+        row = self.motion(connection.first, motion)
+        return row if connection.second is None else row - self.motion(connection.second, motion)
+
+    @cached_property
+    def shapes_of_bodies(self) -> Array:
+        """Mask of the residual shapes among the coordinates of the bodies."""
+        return np.concatenate([self.modes(body).massless for body in self.order])
+
     @cached_property
     def massless(self) -> Array:
-        """Mask of the residual shapes."""
-        return np.concatenate([self.modes(body).massless for body in self.order])
+        """Mask of the coordinates without mass: residual shapes, and what rigid joints prevent."""
+        found = self.shapes_of_bodies.copy()
+        for numbers, modes in self.joints:
+            found[numbers] = modes.massless
+        return found
+
+    @cached_property
+    def rigid(self) -> Array:
+        """Mask of the rigid motions of the bodies, and of those that rigid joints join."""
+        return self._with_joints([self.modes(body).angular_frequency == 0.0 for body in self.order])
 
     @property
     def lumped(self) -> Array:
         """Mask of the motions of lumped bodies, and of the rigid motions of others."""
-        found = []
-        for body in self.order:
-            rigid = self.modes(body).angular_frequency == 0.0
-            found.append(np.ones_like(rigid) if getattr(body, "is_lumped", False) else rigid)
-        return np.concatenate(found) & ~self.massless
+        return self._with_joints(
+            [(self.modes(body).angular_frequency == 0.0) | getattr(body, "is_lumped", False) for body in self.order]
+        )
+
+    def _with_joints(self, of_bodies: list[Array]) -> Array:
+        """Return a mask of motions of the bodies, with those of joined bodies where it has not all of theirs."""
+        found = np.concatenate(of_bodies)
+        for numbers, modes in self.joints:
+            found[numbers] = found[numbers].all() | (modes.stiffness == 0.0)
+        return found & ~self.massless
 
     @property
     def matrices(self) -> tuple[Array, Array]:
@@ -131,28 +200,38 @@ class Coordinates:
 
     @cached_property
     def _coupling(self) -> tuple[Array, Array, Array]:
-        stiffness, dissipation = _matrices(self)
-        return without_massless_coupling(stiffness, dissipation, self.massless[: len(stiffness)])
+        own, stiffness, dissipation = _matrices(self)
+        massless, size = self.massless[: len(own)], len(own)
+        if not self.joints:
+            return without_massless_coupling(stiffness + np.diag(own), dissipation, massless)
+        blend = np.eye(size)
+        for numbers, modes in self.joints:
+            blend[np.ix_(numbers, numbers)] = modes.blend
+            own[numbers] = modes.stiffness
+        stiffness, dissipation = blend.T @ stiffness @ blend + np.diag(own), blend.T @ dissipation @ blend
+        nowhere = massless & (own == 0.0)
+        stiffness[nowhere, nowhere] = 1.0
+        stiffness, dissipation, further = without_massless_coupling(stiffness, dissipation, massless)
+        return stiffness, dissipation, blend @ further
 
 
-def _matrices(coordinates: Coordinates) -> tuple[Array, Array]:
-    """Return the stiffness and the damping matrix of the modes of joined bodies."""
+def _matrices(coordinates: Coordinates) -> tuple[Array, Array, Array]:
+    """Return the stiffness of each mode of joined bodies, that of connections as a matrix, and the damping matrix."""
     size = sum(coordinates.modes(body).count for body in coordinates.joined)
     check_coupled_count(size)
-    stiffness, dissipation = np.zeros((size, size)), np.zeros((size, size))
+    own, stiffness, dissipation = np.zeros(size), np.zeros((size, size)), np.zeros((size, size))
     for body in coordinates.joined:
         modes, span = coordinates.modes(body), slice(*coordinates.spans[body])
-        stiffness[span, span] = np.diag(modes.stiffness)
-        own = np.diag(modes.damping_rate)
-        dissipation[span, span] = own if modes.damping_matrix is None else modes.damping_matrix
+        own[span] = modes.stiffness
+        damped = np.diag(modes.damping_rate)
+        dissipation[span, span] = damped if modes.damping_matrix is None else modes.damping_matrix
     for connection in coordinates.system.connections:
-        row = unit(connection) @ coordinates.body_trace(connection.first)[:, :size]
-        if connection.second is not None:
-            row = row - unit(connection) @ coordinates.body_trace(connection.second)[:, :size]
-        for matrix, rate in zip((stiffness, dissipation), connection.rates, strict=True):
-            if rate:
-                matrix += rate * np.outer(row, row)
-    return stiffness, dissipation
+        for motion, *rates in elements_of(connection):
+            row = coordinates.between(connection, motion)[:size]
+            for matrix, rate in zip((stiffness, dissipation), rates, strict=True):
+                if rate:
+                    matrix += rate * np.outer(row, row)
+    return own, stiffness, dissipation
 
 
 def without_massless_coupling(stiffness: Array, dissipation: Array, massless: Array) -> tuple[Array, Array, Array]:
@@ -190,3 +269,23 @@ def _is_diagonal(matrix: Array) -> bool:
 def _in_space(rows: Array) -> Array:
     """Return rows of a body along x, y and z; a body in the plane is rigid along z."""
     return rows if len(rows) == 3 else np.concatenate([rows, np.zeros((1, rows.shape[1]))])
+
+
+class _Group(NamedTuple):
+    """Bodies that rigid joints join, and these joints."""
+
+    bodies: list[Any]
+    joints: list[Any]
+
+
+def _grouped(system: System) -> list[_Group]:
+    """Return the groups of bodies that rigid joints join, in the order of the joints."""
+    groups: list[_Group] = []
+    for one in filter(held_motions, system.connections):
+        bodies = [point.body for point in ends(one)]
+        reached = [group for group in groups if any(body in group.bodies for body in bodies)]
+        apart = [group for group in groups if group not in reached]
+        together = [*(body for group in reached for body in group.bodies), *bodies]
+        joints = [*(joint for group in reached for joint in group.joints), one]
+        groups = [*apart, _Group(list(dict.fromkeys(together)), joints)]
+    return groups

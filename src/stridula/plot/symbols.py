@@ -68,5 +68,17 @@ def guided(place: Array, inwards: Array, width: float) -> list[Array]:
     return [*bars, *(place + radius * inwards + 0.35 * width * sign * side + circle for sign in (-1.0, 1.0))]
 
 
-CONNECTIONS = {"spring": spring, "dashpot": dashpot, "cubic spring": spring, "tabulated spring": spring}
+def bar(start: Array, end: Array, width: float) -> list[Array]:
+    """Return the lines of a rigid joint between two places: two parallel bars."""
+    return _placed(start, end, width, [[(0.0, 0.12), (1.0, 0.12)], [(0.0, -0.12), (1.0, -0.12)]])
+
+
+CONNECTIONS = {
+    "spring": spring,
+    "dashpot": dashpot,
+    "cubic spring": spring,
+    "tabulated spring": spring,
+    "bushing": spring,
+    "rigid joint": bar,
+}
 SUPPORTS = {"pinned": pinned, "clamped": clamped, "guided": guided}

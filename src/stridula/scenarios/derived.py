@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, create_model
 
-from ..declared import Choice, Declared, Each, Own, Text, declared, texts
+from ..declared import Choice, Declared, Each, Own, Switch, Text, declared, texts
 from .fields import ModalDamping, Rows
 from .kinds import Read
 from .tables import Table
@@ -104,6 +104,11 @@ def _choice(kind: Choice) -> Any:
 @_typed.register
 def _each(kind: Each) -> Any:
     return list[Annotated[float, Read(kind.one)]]
+
+
+@_typed.register
+def _switch(_: Switch) -> Any:
+    return bool
 
 
 @_typed.register

@@ -29,6 +29,8 @@ UNITS: dict[str, dict[str, str]] = {
     "N/m": {"N/m": "1", "N/mm": "1e3", "kN/m": "1e3", "kN/mm": "1e6"},
     "N/m3": {"N/m3": "1", "N/mm3": "1e9"},
     "N s/m": {"N s/m": "1", "N s/mm": "1e3", "kN s/m": "1e3"},
+    "N m/rad": {"N m/rad": "1", "kN m/rad": "1e3", "N mm/rad": "1e-3"},
+    "N m s/rad": {"N m s/rad": "1"},
     "N s/m3": {"N s/m3": "1", "N s/mm3": "1e9"},
     "1/m": {"1/m": "1", "1/mm": "1e3"},
     "1/Hz": {"1/Hz": "1", "1/kHz": "1e-3"},

@@ -23,7 +23,15 @@ from ..matrix_input import numbers
 from ..modes import Modes, hashed_once
 from ..points import BodyPoint
 from ..sections import SHORTEST_WAVE, Circle, Material, Rectangle, Section
-from .finite_elements import FIXED_BY_SUPPORT, X, assemble, displacement_row, element_mass, element_stiffness
+from .finite_elements import (
+    FIXED_BY_SUPPORT,
+    X,
+    assemble,
+    displacement_row,
+    element_mass,
+    element_stiffness,
+    slope_row,
+)
 from .prism_surfaces import beam_surface, has_outline
 
 LARGEST_ELEMENTS = 500
@@ -83,6 +91,7 @@ class FiniteElementBeam(HasCard):
     is_spatial: ClassVar[bool] = False
     has_positions: ClassVar[bool] = True
     has_translation: ClassVar[bool] = True
+    has_rotations: ClassVar[bool] = True
     material: Material
     section: Rectangle | Circle | Section
     length: Length
@@ -193,6 +202,12 @@ class FiniteElementBeam(HasCard):
             if len(known.traces) < MANY_POINTS:
                 known.traces[position] = found
         return found.copy()
+
+    def rotation(self, position: float, held_x: bool = False) -> Array:
+        """Return the rows that give the rotation of the section at `position` about x, y and z, shape (3, modes)."""
+        self.check_position(position)
+        slope = slope_row(position, self.length, self.angle, self.elements) @ _reduced(self, held_x).shapes
+        return np.outer(np.cross(in_space(self.axes[0]), in_space(self.axes[1])), slope)
 
     @property
     def has_surface(self) -> bool:

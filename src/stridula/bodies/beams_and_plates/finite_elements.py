@@ -78,6 +78,18 @@ def assemble(element: Array, angle: float, elements: int) -> Array:
     return matrix
 
 
+def slope_row(position: float, length: float, angle: float, elements: int) -> Array:
+    """Return the row that gives the slope dw/ds at `position` from all nodes, shape (3 (elements + 1),)."""
+    le = length / elements
+    element = min(int(position / le), elements - 1)
+    s = position / le - element
+    bend = 6.0 * (s - s**2) / le
+    slopes = np.array([0.0, -bend, 1.0 - 4.0 * s + 3.0 * s**2, 0.0, bend, 3.0 * s**2 - 2.0 * s])
+    row = np.zeros(3 * (elements + 1))
+    row[3 * element : 3 * element + 6] = slopes @ np.kron(np.eye(2), world_from_axes(angle))
+    return row
+
+
 def displacement_row(position: float, length: float, angle: float, elements: int) -> Array:
     """Return the rows that give the world displacement at `position` from all nodes, shape (2, 3 (elements + 1))."""
     le = length / elements

@@ -69,6 +69,7 @@ class ModalBeam(InPlane):
     point_names: ClassVar[tuple[str, ...]] = ("centre",)
     has_positions: ClassVar[bool] = True
     has_translation: ClassVar[bool] = True
+    has_rotations: ClassVar[bool] = True
     material: Material
     section: Rectangle | Circle | Section
     length: Length
@@ -191,6 +192,14 @@ class ModalBeam(InPlane):
         rows[1, :bending] = self.amplitude * np.sin(np.arange(1, bending + 1) * np.pi * position / self.length)
         rows[0, bending:] = self.amplitude * np.sin(np.arange(1, axial + 1) * np.pi * position / self.length)
         return self.in_the_world(rows)
+
+    def rotation(self, position: float, held_x: bool = False) -> Array:
+        """Return the rows that give the rotation of the section at an abscissa about x, y and z, shape (3, modes)."""
+        self.check_position(position)
+        (along, normal), slope = map(in_space, self.axes), np.zeros(sum(self.harmonics))
+        number = np.arange(1, self.harmonics[0] + 1) * np.pi / self.length
+        slope[: number.size] = self.amplitude * number * np.cos(number * position)
+        return np.outer(np.cross(along, normal), slope)
 
     def path(self) -> Path:
         """Return the path along which other bodies slide: its axis."""

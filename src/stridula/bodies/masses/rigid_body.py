@@ -105,6 +105,17 @@ class RigidBody(NamedPoints):
         self.modes(held_x)
         return np.asarray(self.shapes_at(self.offset(position)[None])[0])
 
+    @property
+    def has_rotations(self) -> bool:
+        """Whether it turns, so that connections may act on its rotations."""
+        return self.inertia is not None
+
+    def rotation(self, position: str, held_x: bool = False) -> Array:
+        """Return the rows that give the rotation about x, y and z from the modes, shape (3, modes) [rad]."""
+        rows = np.zeros((3, self.modes(held_x).count))
+        rows[:, 3:] = self._turns.T
+        return rows
+
     def offset(self, position: str) -> Array:
         """Return the place of a point at rest relative to the centre of mass [m], shape (3,)."""
         self.check_position(position)
