@@ -63,6 +63,7 @@ MODES = [
     "frequencies-beams",
     "frequencies-modal",
     "order-elements",
+    "welded-beam",
     "frequencies-plate",
     "in-plane-plate",
     "deflection-plate",

@@ -263,6 +263,58 @@ def test_linear_theory_and_the_start_know_the_joint():
     np.testing.assert_allclose(runs[1], runs[1].mean(), rtol=1e-7)
 
 
+def stick_slip(parts):
+    joints = [st.RigidJoint(parts[0].centre, parts[1].centre)] if len(parts) > 1 else []
+    track = st.RigidTrack(velocity=0.2)
+    contact = st.PointContact(parts[-1].centre, track, friction=st.StaticKinetic(0.6, 0.3))
+    spring = st.Spring(parts[0].centre, stiffness=60.0)
+    return st.System(contact, [st.Force(parts[0].centre, y=-10.0)], [spring, *joints])
+
+
+def test_cycles_are_those_of_the_whole():
+    systems = [stick_slip(parts) for parts in (ONE_MASS, TWO_MASSES)]
+    whole, apart = (st.limit_cycle(system, st.simulate(system, 12.0)) for system in systems)
+    assert float(apart["frequency"]) == pytest.approx(float(whole["frequency"]), rel=1e-6)
+
+
+def test_derivatives_of_modes_are_those_of_the_whole():
+    """By springs and friction, and by the mass of each part as by that of the whole."""
+
+    def slider(parts):
+        joints = [st.RigidJoint(parts[0].centre, parts[1].centre)] if len(parts) > 1 else []
+        return st.System(
+            st.PointContact(parts[-1].centre, BELT, friction=st.Coulomb(0.5), stiffness=800.0),
+            [st.Force(parts[0].centre, y=-20.0), st.InitialEquilibrium()],
+            [
+                st.Spring(parts[0].centre, stiffness=1000.0, direction=(1.0, 1.0, 0.0)),
+                st.Dashpot(parts[0].centre, coefficient=3.0),
+                st.Spring(parts[-1].centre, stiffness=700.0, direction="y"),
+                *joints,
+            ],
+        )
+
+    whole, apart = (st.mode_sensitivity(slider(parts)) for parts in (ONE_MASS, TWO_MASSES))
+    for parameter in whole["parameter"].values.tolist():
+        others = ["bodies.a.mass", "bodies.b.mass"] if "mass" in parameter else [parameter]
+        for name in ("d_frequency", "d_growth_rate"):
+            expected = whole[name].sel(parameter=parameter).values
+            for other in others:
+                found = apart[name].sel(parameter=other).values
+                np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-9)
+
+
+def test_sound_from_forces_is_refused():
+    first = beam(0.2, 5, name="first")
+    second = beam(0.3, 5, root="clamped", name="second")
+    track = st.ModalBeam(STEEL, st.Rectangle(0.02, 0.009), 1.1, damping=0.01, cutoff=1.5e3)
+    contact = st.PointContact(first.tip, track, at=0.5)
+    joint = st.RigidJoint(first.root, second.tip, rotations=True)
+    system = st.System(contact, [st.Force(first.root, y=-1.0)], [joint])
+    run = st.simulate(system, 0.01)
+    with pytest.raises(ValueError, match="system must have no rigid joint, whose forces are in no record"):
+        st.radiate(run, system, [(0.5, 0.5, 1.0)])
+
+
 def test_a_run_continues_bit_by_bit_and_can_be_run_again():
     one, two = st.PointMass(0.5, "a"), st.PointMass(0.8, "b")
     contact = st.PointContact(two.centre, BELT, friction=st.StaticKinetic(0.5, 0.3))

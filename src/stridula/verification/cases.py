@@ -32,6 +32,7 @@ from . import (
     strings,
     surfaces,
     turning,
+    welds,
 )
 from .case import Case
 
@@ -47,6 +48,7 @@ CASES: tuple[Case, ...] = (
     *partial_slip.CASES,
     *joints.CASES,
     *chains.CASES,
+    *welds.CASES,
     *heating.CASES,
     *jams.CASES,
     *laws.CASES,
