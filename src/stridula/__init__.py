@@ -123,6 +123,7 @@ _HOME = {
         "ensemble",
         "follow_cycle",
         "mode_sensitivity",
+        "modify",
         "orbit_diagram",
         "root_loci",
         "sensitivity",

@@ -155,6 +155,7 @@ from .studies import critical_value as critical_value
 from .studies import ensemble as ensemble
 from .studies import follow_cycle as follow_cycle
 from .studies import mode_sensitivity as mode_sensitivity
+from .studies import modify as modify
 from .studies import orbit_diagram as orbit_diagram
 from .studies import root_loci as root_loci
 from .studies import sensitivity as sensitivity

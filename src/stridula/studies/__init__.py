@@ -23,6 +23,7 @@ _HOME = {
     "follow_cycle": "branches",
     "mean_and_interval": "ensembles",
     "mode_sensitivity": "mode_derivatives",
+    "modify": "modified",
     "orbit_diagram": "orbit_diagrams",
     "root_loci": "loci",
     "sensitivity": "sobol",

@@ -12,6 +12,7 @@ from .ensembles import share_of as share_of
 from .loci import critical_value as critical_value
 from .loci import root_loci as root_loci
 from .mode_derivatives import mode_sensitivity as mode_sensitivity
+from .modified import modify as modify
 from .orbit_diagrams import orbit_diagram as orbit_diagram
 from .points import Grid as Grid
 from .points import LatinHypercube as LatinHypercube
