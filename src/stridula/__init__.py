@@ -44,6 +44,7 @@ _HOME = {
         "ExponentialWeakening",
         "FrictionFit",
         "FrictionLaw",
+        "FrictionAlongTrack",
         "FrictionOverTemperature",
         "HeatedLayers",
         "HertzStiffness",

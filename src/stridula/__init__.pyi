@@ -78,6 +78,7 @@ from .connections import Spring as Spring
 from .connections import TabulatedSpring as TabulatedSpring
 from .contact import Coulomb as Coulomb
 from .contact import ExponentialWeakening as ExponentialWeakening
+from .contact import FrictionAlongTrack as FrictionAlongTrack
 from .contact import FrictionFit as FrictionFit
 from .contact import FrictionLaw as FrictionLaw
 from .contact import FrictionOverTemperature as FrictionOverTemperature

@@ -1,5 +1,6 @@
 """Contacts between bodies: friction laws, rigid tracks, point and surface contacts."""
 
+from .along_track import FrictionAlongTrack
 from .coulomb import Coulomb, StaticKinetic
 from .fits import FrictionFit, fit_friction
 from .friction_law import FrictionLaw
@@ -25,6 +26,7 @@ __all__ = [
     "ContactStiffness",
     "Coulomb",
     "ExponentialWeakening",
+    "FrictionAlongTrack",
     "FrictionFit",
     "FrictionLaw",
     "FrictionOverTemperature",

@@ -148,8 +148,8 @@ class FrictionLaw(ABC):
         """Whether friction depends on the pressure."""
         return False
 
-    def at(self, temperature: float) -> FrictionLaw:
-        """Return the law at a temperature [degC]."""
+    def at(self, value: float) -> FrictionLaw:
+        """Return the law at a temperature [degC], or at a place [m], on which it depends."""
         return self
 
     @property
@@ -158,8 +158,13 @@ class FrictionLaw(ABC):
         return False
 
     @property
-    def at_temperatures(self) -> tuple[tuple[float, FrictionLaw], ...]:
-        """Temperatures at which the law is given [degC], and the law at each; none if it does not depend on them."""
+    def depends_on_place(self) -> bool:
+        """Whether friction depends on the place along the track."""
+        return False
+
+    @property
+    def at_values(self) -> tuple[tuple[float, FrictionLaw], ...]:
+        """Temperatures or places at which the law is given, and the law at each; none if it depends on neither."""
         return ()
 
     def slope_over_normal(self, velocity: float, normal_force: float) -> float:

@@ -79,6 +79,9 @@ class HeatedLayers:
     """
 
     kind: ClassVar[str] = "layers"
+    # They follow time alone.
+    by_place: ClassVar[float] = 0.0
+    period: ClassVar[float] = 0.0
     capacity: Annotated[float | Sequence[float], OneOrEach(Number("J/K", above=0.0))]
     conductance: Annotated[float | Sequence[float], OneOrEach(Number("W/K", least=0.0))] = ()
     cooling: Annotated[float, Number("W/K", least=0.0)] = 0.0
@@ -223,6 +226,8 @@ class TemperatureHistory:
     """
 
     kind: ClassVar[str] = "history"
+    by_place: ClassVar[float] = 0.0
+    period: ClassVar[float] = 0.0
     time: Annotated[Sequence[float], Each(Number("s", least=0.0))]
     temperature: Annotated[Sequence[float], Each(Number("degC"))]
 

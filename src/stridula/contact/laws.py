@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..checks import instance
+from .along_track import FrictionAlongTrack
 from .coulomb import Coulomb, StaticKinetic
 from .friction_law import FrictionLaw
 from .lugre import LuGre
@@ -21,6 +22,7 @@ LAWS: tuple[type[FrictionLaw], ...] = (
     RateAndState,
     TabulatedFriction,
     FrictionOverTemperature,
+    FrictionAlongTrack,
 )
 
 

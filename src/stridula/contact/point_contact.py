@@ -15,6 +15,7 @@ from ..bodies import BodyPoint, CircularPath, ModalBeam, ModalPlate, Track, is_t
 from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, instance, within, within_a_turn
 from ..declared import Angle, Distance, Each, Number, OneOrEach, Position, check_declared
+from .along_track import Places
 from .coulomb import Coulomb
 from .elastic import ElasticFriction, check_in_series
 from .friction_law import FrictionLaw
@@ -129,12 +130,23 @@ class PointContact:
         if self.friction.depends_on_pressure and not self.area:
             raise ArgumentError("area", "be given under friction that depends on the pressure", self.area)
         check_heating(self.heating, self.friction.depends_on_temperature)
+        self._check_place()
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
         if self.tangential_stiffness is not None:
             check_in_series(self.friction, self.tangential_stiffness)
         elif self.tangential_damping:
             raise ArgumentError("tangential_damping", "be 0 without a tangential_stiffness", self.tangential_damping)
         self._check_directions()
+
+    def _check_place(self) -> None:
+        """Raise if friction depends on a place along a track that has none, or on a temperature as well."""
+        if not self.friction.depends_on_place:
+            return
+        if self.heating is not None:
+            raise ArgumentError("heating", "be left out under friction that depends on the place", self.heating)
+        if self.rigid_track is None and self.path_body is None:
+            words = "not depend on the place except on a rigid track, a beam or a plate"
+            raise ArgumentError("friction", words, self.friction, got=str(self.friction))
 
     def _check_directions(self) -> None:
         for name in ("normal", "tangent"):
@@ -227,7 +239,12 @@ class PointContact:
     def law(self) -> FrictionLaw:
         """The law that acts at the start: its friction, in series with its tangential stiffness if it has one."""
         law = self.friction.on(self.area)
-        return self._with_joint(law if self.heating is None else law.at(float(self.heating.start[0])))
+        return self._with_joint(law if self.acts_at is None else law.at(float(self.acts_at.start[0])))
+
+    @property
+    def acts_at(self) -> Heating | Places | None:
+        """Its temperature, or its place along the track, at which its law acts; None without either."""
+        return Places(self.friction, self.at) if self.friction.depends_on_place else self.heating
 
     @property
     def friction_words(self) -> str:
@@ -237,14 +254,14 @@ class PointContact:
 
     @property
     def layers_of_heat(self) -> tuple[str, int] | None:
-        """Kind of its heating and number of layers, None without a temperature."""
-        return None if self.heating is None else (self.heating.kind, self.heating.layers)
+        """Kind of its heating and number of layers, None without a temperature or a place at which its law acts."""
+        return None if self.acts_at is None else (self.acts_at.kind, self.acts_at.layers)
 
     @property
-    def laws_at_temperatures(self) -> tuple[tuple[float, FrictionLaw], ...]:
-        """Temperatures at which its friction is given [degC], and the law that acts at each; none without any."""
-        found = self.friction.on(self.area).at_temperatures
-        return tuple((temperature, self._with_joint(law)) for temperature, law in found)
+    def laws_at_values(self) -> tuple[tuple[float, FrictionLaw], ...]:
+        """Temperatures [degC] or places [m] at which its friction is given, and the law at each; none without any."""
+        found = self.friction.on(self.area).at_values
+        return tuple((value, self._with_joint(law)) for value, law in found)
 
     def _with_joint(self, law: FrictionLaw) -> FrictionLaw:
         """Return a law in series with the tangential stiffness, if there is one."""

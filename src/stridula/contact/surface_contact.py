@@ -134,6 +134,9 @@ class SurfaceContact:
         if len(self._laws) != self.areas.size:
             words = f"be one law, or have {self.areas.size}, one for each point"
             raise ArgumentError("friction", words, got=counted(len(self._laws), "law"))
+        if any(law.depends_on_place for law in self._laws):
+            words = "not depend on the place along the track, as points of a face have none: give each point its law"
+            raise ArgumentError("friction", words, self.friction)
         check_heating(self.heating, any(law.depends_on_temperature for law in self._laws))
         if self.wear is not None and len(self.wear) != self.areas.size:
             raise ArgumentError("wear", f"have {self.areas.size} depths, one for each point", got=str(len(self.wear)))

@@ -200,6 +200,9 @@ def _check(system: System, flat: Assembly) -> None:
         if contact.heating is not None:
             words = "have contacts without heating, as temperatures do not repeat: take friction.at(temperature)"
             raise ArgumentError("system", words, got=f"{contact.heating} under {name}")
+        if contact.friction.depends_on_place:
+            words = "have friction that is the same along the track: take friction.at(place)"
+            raise ArgumentError("system", words, got=f"{contact.friction} under {name}")
 
 
 def _settled(drive: Any) -> Any:

@@ -272,7 +272,7 @@ class Run:
             return []
         found: list[tuple[float, str]] = []
         for name, number, own in zip(*self._shown, self.contact_record[at.HOT, :, : self.done], strict=True):
-            given = [temperature for temperature, _ in self.system.contacts[number].friction.at_temperatures]
+            given = [temperature for temperature, _ in self.system.contacts[number].friction.at_values]
             if not given or not own.size:
                 continue
             for reached, end, beyond in (

@@ -66,11 +66,11 @@ def friction(law: FrictionLaw, velocities: Array | Sequence[float] | None = None
 
 
 def _conditions(law: FrictionLaw) -> list[str | None]:
-    """Return temperature and pressure of each section of a law in words, none without either."""
-    if law.at_temperatures:
+    """Return temperature or place, and pressure, of each section of a law in words, none without either."""
+    if law.at_values:
         return [
-            f"{temperature:.4g} degC" + ("" if words is None else f", {words}")
-            for temperature, one in law.at_temperatures
+            f"{value:.4g} {getattr(law, 'unit', '')}" + ("" if words is None else f", {words}")
+            for value, one in law.at_values
             for words in _conditions(one)
         ]
     given = getattr(law, "pressure", None)

@@ -12,6 +12,7 @@ from ..contact import (
     LAWS,
     STIFFNESSES,
     Coulomb,
+    FrictionAlongTrack,
     FrictionOverTemperature,
     PointContact,
     Profile,
@@ -46,18 +47,24 @@ else:
     _laws = [
         table_of(law, "law", law.law, "law of friction", is_usual=law is Coulomb, from_file=from_file(law))
         for law in LAWS
-        if law is not FrictionOverTemperature
+        if law not in (FrictionOverTemperature, FrictionAlongTrack)
     ]
-    _at_each = "law of friction at each temperature, all of one kind"
-    _faded = table_of(
-        FrictionOverTemperature,
-        "law",
-        FrictionOverTemperature.law,
-        "law of friction",
-        after={"laws": (list[one_of("law", _laws)] | None, None, _at_each)},
-        from_file=from_file(FrictionOverTemperature),
-    )
-    Friction = one_of("law", [*_laws, _faded])
+    _at_each = {
+        FrictionOverTemperature: "law of friction at each temperature, all of one kind",
+        FrictionAlongTrack: "law of friction at each place, all of one kind",
+    }
+    _of_several = [
+        table_of(
+            law,
+            "law",
+            law.law,
+            "law of friction",
+            after={"laws": (list[one_of("law", _laws)] | None, None, words)},
+            from_file=from_file(law),
+        )
+        for law, words in _at_each.items()
+    ]
+    Friction = one_of("law", [*_laws, *_of_several])
     Heating = one_of("kind", (table_of(kind, "kind", kind.kind, "layers or history") for kind in HEATINGS))
     _law = one_of("kind", (table_of(kind, "kind", kind.kind, "linear, power law or hertz") for kind in STIFFNESSES))
     Stiffness, StiffnessOfArea = number_or(is_.Stiffness, _law), number_or(is_.StiffnessOfArea, _law)

@@ -6,7 +6,7 @@ from ..lanes.compiled import called, strict_pasted
 from ..lanes.operations import Number, Runs, add, held, hold
 from ..layout import columns as at
 from ..layout.contact_values import HeatedLaw
-from ..layout.heated_laws import AT, FIRST_TEMPERATURE, TIMES, WIDTH
+from ..layout.heated_laws import AT, FIRST_TEMPERATURE, PERIOD, TIMES, WIDTH
 from ..layout.laws import STATIC
 from ..layout.parts import Parts
 
@@ -19,12 +19,14 @@ def share_between(low: Number, high: Number, value: Number) -> Number:
 
 @lanewise(0.0)
 def temperature_at(first: Number, time: Number, law: HeatedLaw) -> Number:
-    """Return the temperature of a contact: of its first layer, or that of its history at a time."""
+    """Return the temperature of a contact: of its first layer, or that of its history at a time, or its place."""
     given, row = law.given, law.row
     count = int(given[row, TIMES])
     if count == 0:
         return first
     times = FIRST_TEMPERATURE + int(given[row, AT]) * (1 + int(given[row, WIDTH]))
+    if given[row, PERIOD] > 0.0:
+        time = given[row, times] + (time - given[row, times]) % given[row, PERIOD]
     place = times + piece_at(given, row, times, count - 1, time)
     share = share_between(given[row, place], given[row, place + 1], time)
     begin, end = given[row, place + count], given[row, place + count + 1]
@@ -84,6 +86,11 @@ def heat_contacts(parts: Parts, runs: Runs) -> None:
             add(energies, at.STORED_HEAT, runs, held(numbers, own + at.CAPACITY + j, runs) * rise)
             hold(carried, base + j, runs, held(now, j, runs))
         if layers > 1:
+            before = held(carried, base + 1, runs)
+            moved = held(carried, i * at.CARRIED + at.MATERIAL, runs) - before
+            moved *= held(numbers, own + at.BY_PLACE, runs)
+            hold(carried, base + 1, runs, before + moved)
+            seen = before + moved + held(numbers, own + at.AHEAD, runs) * moved
             law = HeatedLaw(parts.heating.laws, parts.contacts.laws, i * runs.columns + runs.first)
-            hold(carried, base, runs, temperature_at(held(carried, base, runs), held(carried, base + 1, runs), law))
+            hold(carried, base, runs, temperature_at(held(carried, base, runs), seen, law))
     set_laws(parts, runs)

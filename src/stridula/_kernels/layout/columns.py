@@ -200,11 +200,13 @@ FINISHED, OFF_TRACK, NOT_FINITE, CONTACT_UNSOLVED, ENERGY_CREATED, TOO_STIFF = r
 CONSTANT_PULL, LINEAR, CUBIC, SPRING_REACH = range(4)
 OF_SPRING, OF_KINK = 4, 3
 # Numbers of the heating of a contact: share of its loss to friction that heats it; temperatures of its layers after a
-# step [degC] for those before, for a loss [degC/J], and without both; heat capacities [J/K].
+# step [degC] for those before, for a loss [degC/J], and without both; heat capacities [J/K]; 1 if the second is the
+# place along the track, and the share of a step by which the law looks ahead of it.
 HEAT_SHARE, PER_LAYER = 0, 1
 PER_LOSS = PER_LAYER + LAYERS * LAYERS
 WITHOUT_LOSS, CAPACITY = PER_LOSS + LAYERS, PER_LOSS + 2 * LAYERS
-OF_HEATING = CAPACITY + LAYERS
+BY_PLACE, AHEAD = CAPACITY + LAYERS, CAPACITY + LAYERS + 1
+OF_HEATING = AHEAD + 1
 # State of a nonlinear spring: its pull in this step, and its stretch half a step before it.
 PULL, STRETCH = range(2)
 SPRING_STATE = 2
