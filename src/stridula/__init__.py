@@ -68,6 +68,7 @@ _HOME = {
     "doubtful": ("DoubtfulValue",),
     "drives": ("Force", "Gravity", "ImposedVelocity", "InitialEquilibrium", "InitialState", "InitialVelocity"),
     "histories": ("Constant", "Harmonic", "Ramp", "Sampled"),
+    "signals": ("read_signal", "read_signals", "write_signal"),
     "system": ("System",),
     "records": (
         "Acceleration",

@@ -138,6 +138,9 @@ from .scenarios import list_scenarios as list_scenarios
 from .scenarios import load_scenario as load_scenario
 from .scenarios import scenario_schema as scenario_schema
 from .scenarios import scenario_text as scenario_text
+from .signals import read_signal as read_signal
+from .signals import read_signals as read_signals
+from .signals import write_signal as write_signal
 from .studies import CalibrationProgress as CalibrationProgress
 from .studies import Grid as Grid
 from .studies import LatinHypercube as LatinHypercube
