@@ -44,8 +44,8 @@ class Column(NamedTuple):
 
 LEVELS = (
     Column("Leq [dB]", 1, equivalent_level, levels.SHORTEST, 0.0),
-    Column("LAeq [dB]", 1, lambda pressure: equivalent_level(pressure, "A"), levels.SHORTEST, levels.LOWEST_RATE),
-    Column("LAFmax [dB]", 1, lambda pressure: sound_level(pressure).max("time"), levels.SHORTEST, levels.LOWEST_RATE),
+    Column("LAeq [dB]", 1, lambda pressure: equivalent_level(pressure, "A"), levels.SHORTEST, 2.0 * levels.AUDIBLE),
+    Column("LAFmax [dB]", 1, lambda pressure: sound_level(pressure).max("time"), levels.SHORTEST, 2.0 * levels.AUDIBLE),
 )
 # These need MoSQITo.
 SENSATIONS = (
