@@ -228,7 +228,7 @@ def _tones_of(power: Array, frequency: Array, settings: dict[str, float]) -> lis
 
 
 def _offset(power: Array, k: int) -> float:
-    """Return the distance of a tone from the peak of its spectrum [bins], exact for a steady one under a Hann window."""
+    """Return the distance of a tone from the peak of its spectrum [bins], exact for a steady one."""
     side = 1 if power[k + 1] > power[k - 1] else -1
     ratio = float(np.sqrt(power[k + side] / power[k]))
     return side * (2.0 * ratio - 1.0) / (1.0 + ratio)
