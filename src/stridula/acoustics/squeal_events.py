@@ -160,9 +160,8 @@ def _of_stop(
     _check_band(rate, sound, settings)
     begin = float(sound["time"].values[0])
     rows, peak = [], (-np.inf, np.nan)
-    labels = (
-        sound["listener"].values.tolist() if sound.ndim == 2 and "listener" in sound.coords else range(values.shape[1])
-    )
+    has_names = sound.ndim == 2 and "listener" in sound.coords
+    labels = sound["listener"].values.tolist() if has_names else list(range(values.shape[1]))
     for column, label in zip(values.T, labels, strict=True):
         tones, size, hop = _tones(column, rate, settings)
         lasting = _lasting(tones, 1.0 / settings["frame"])

@@ -36,8 +36,8 @@ def order_spectrum(
     signal : xarray.DataArray, shape (time,)
         A vibration or a sound.
     speed : xarray.DataArray, shape (time,)
-        Speed at the same times, in ``rpm``, ``1/min``, ``Hz``, ``1/s`` or ``rad/s`` as its attribute ``units`` says; 0 or
-        above.
+        Speed at the same times, 0 or above, in ``rpm``, ``1/min``, ``Hz``, ``1/s`` or ``rad/s`` as its attribute
+        ``units`` says.
     highest : float, optional
         Highest order [1].
     revolutions : float, optional
@@ -46,8 +46,8 @@ def order_spectrum(
     Returns
     -------
     xarray.DataArray, shape (time, order)
-        Effective value of each order, in units of the signal, over the times of the middles of the windows; NaN above half
-        of the sample rate. ``speed`` [Hz] is the mean of each window.
+        Effective value of each order, in units of the signal, over the times of the middles of the windows; NaN above
+        half of the sample rate. ``speed`` [Hz] is the mean of each window.
 
     Raises
     ------

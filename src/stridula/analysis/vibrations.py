@@ -130,8 +130,8 @@ def vibration_bursts(
     """Return the bursts of a vibration between quiet times, shape (bursts, 2) [s].
 
     The envelope is the root mean square above the lowest tone over a centred window; bursts lie above half of its 90th
-    percentile. Bodies that ring end a burst later than the contact does: the time in which their vibration falls by half
-    is not known from the vibration alone.
+    percentile. Bodies that ring end a burst later than the contact does: the time in which their vibration falls by
+    half is not known from the vibration alone.
 
     Parameters
     ----------
@@ -157,6 +157,8 @@ def vibration_bursts(
     if interval * 2.0 * lowest_tone > 1.0 + 1e-9:
         got = f"{1.0 / interval:.6g} Hz"
         raise ArgumentError("signal", f"be sampled at {2.0 * lowest_tone:g} Hz or more", signal, got=got)
+    if not np.isfinite(values).all():
+        raise ArgumentError("signal", "be finite", signal, got="values that are not")
     if values.size * interval < 2.0 * smoothing:
         raise ArgumentError("smoothing", f"be at most {at_most(0.5 * values.size * interval)} s", smoothing)
     filtered = scipy.signal.butter(4, lowest_tone, "highpass", fs=1.0 / interval, output="sos")
@@ -178,7 +180,7 @@ def vibration_bursts(
 
 
 def _audible(values: Array, interval: float, limits: Thresholds) -> Frames:
-    """Return the part of a vibration above the lowest tone, averaged to about the rate over whole numbers of samples."""
+    """Return the part of a vibration above the lowest tone, averaged to about the rate over whole samples."""
     ratio = max(1, int(min(1.0 / (limits.rate * interval), values.size) * (1.0 + 1e-9)))
     means = values[: values.size // ratio * ratio].reshape(-1, ratio).mean(axis=1)
     return frames(means[None], ratio * interval, limits.frame, limits.lowest_tone)
