@@ -164,7 +164,7 @@ HOMES = {
     "doubtful": "Doubtful values",
     "acoustics.levels": "Sound levels",
     "acoustics.sensation": "Psychoacoustics",
-    "acoustics.squeal_events": "Squeal events",
+    "acoustics.squeals": "Squeal events",
     "acoustics.listening": "Sound in notebooks",
     "acoustics.wav": "Sound files",
     "drives": "Drives",

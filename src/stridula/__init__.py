@@ -98,7 +98,7 @@ _HOME = {
     ),
     "acoustics.levels": ("equivalent_level", "harmonic_levels", "sound_level", "third_octave_levels"),
     "acoustics.sensation": ("loudness", "loudness_over_time", "roughness", "sharpness"),
-    "acoustics.squeal_events": ("squeal_events",),
+    "acoustics.squeals": ("squeal_events",),
     "acoustics.listening": ("PlayableSound", "listen"),
     "acoustics.wav": ("SoundFile", "read_wav", "write_wav"),
     "analysis.mobilities": ("mobility",),

@@ -30,7 +30,7 @@ from .acoustics.sensation import loudness as loudness
 from .acoustics.sensation import loudness_over_time as loudness_over_time
 from .acoustics.sensation import roughness as roughness
 from .acoustics.sensation import sharpness as sharpness
-from .acoustics.squeal_events import squeal_events as squeal_events
+from .acoustics.squeals import squeal_events as squeal_events
 from .acoustics.wav import SoundFile as SoundFile
 from .acoustics.wav import read_wav as read_wav
 from .acoustics.wav import write_wav as write_wav

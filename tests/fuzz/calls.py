@@ -246,7 +246,20 @@ def _things(*names: str) -> tuple[tuple[str, Any], ...]:
 _NUMBERS = _plain(0.1, 1.0, 0.5, 1e-3)
 _RUNS = _things("record", "cut record", "two contacts")
 _SIGNALS = _things("signal", "one sound", "constant signal")
-_NAMES = _plain("file.txt", "new.nc", "new.csv", "new.mat", "new.png", "new.wav", "new.flac", "new.uff", "table.csv", "missing/new.nc", "squeal", "")
+_NAMES = _plain(
+    "file.txt",
+    "new.nc",
+    "new.csv",
+    "new.mat",
+    "new.png",
+    "new.wav",
+    "new.flac",
+    "new.uff",
+    "table.csv",
+    "missing/new.nc",
+    "squeal",
+    "",
+)
 _SYSTEMS = _things("system")
 _STATUS = _plain("sticking", "sliding", "separated")
 # Kinds of arguments by name, valid in at least one function.

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
-from ..checks import ArgumentError, at_most, positive
+from ..checks import ArgumentError, at_most, positive, within
 from .signals import samples
 
 # Revolutions per second of one unit of speed.
@@ -20,6 +20,8 @@ UNITS = {
     "rad/s": 0.5 / math.pi,
 }
 HIGHEST, REVOLUTIONS = 20.0, 8.0
+# Most orders of a spectrum.
+MOST = 10_000.0
 
 
 def order_spectrum(
@@ -57,7 +59,10 @@ def order_spectrum(
     values, interval = samples(signal)
     turning = _speed(speed, signal)
     positive("highest", highest)
-    positive("revolutions", revolutions)
+    within("revolutions", revolutions, 1.0, MOST / highest)
+    fastest = float(turning.max()) * interval
+    if 0.25 * revolutions < fastest:
+        raise ArgumentError("speed", f"be at most {at_most(0.25 * revolutions / interval)} Hz", got="more")
     # Of samples at the values of speed at their times, by the trapezoidal rule.
     angle = np.concatenate([[0.0], np.cumsum(0.5 * (turning[1:] + turning[:-1]))]) * interval
     count = math.floor(highest * revolutions * (1.0 + 1e-9))

@@ -10,7 +10,7 @@ import scipy  # its parts are imported on first use
 import xarray as xr
 
 from ..arrays import Array
-from ..checks import ArgumentError, at_most, finite, instance, positive
+from ..checks import ArgumentError, at_most, finite, instance, positive, within
 from ..weighting import a_weighting
 from .levels import REFERENCE
 from .pressures import channels, check_length, is_enough
@@ -106,7 +106,7 @@ def _checked(threshold: float, lowest: float, highest: float, frame: float, prom
         raise ArgumentError("highest", f"be above the lowest frequency, {lowest!r} Hz", highest)
     if positive("frame", frame) * lowest < 4.0 * LOBE:
         raise ArgumentError("frame", f"last at least {4 * LOBE} periods of {lowest!r} Hz", frame)
-    positive("prominence", prominence)
+    within("prominence", prominence, 0.0, 200.0, ends=False)
     return {
         "threshold": threshold,
         "lowest": lowest,
@@ -133,7 +133,8 @@ def _parts(sound: Any, stops: Any) -> tuple[list[Any], list[tuple[xr.DataArray, 
     if stops is not None:
         raise ArgumentError("stops", "be left out with a sound for each stop", stops)
     if isinstance(sound, Mapping):
-        names, sounds = [str(name) for name in sound], list(sound.values())
+        names: list[Any] = [str(name) for name in sound]
+        sounds = list(sound.values())
     elif isinstance(sound, Sequence) and not isinstance(sound, (str, bytes)):
         sounds = list(sound)
         names = list(range(len(sounds)))
@@ -161,7 +162,7 @@ def _of_stop(
     begin = float(sound["time"].values[0])
     rows, peak = [], (-np.inf, np.nan)
     has_names = sound.ndim == 2 and "listener" in sound.coords
-    labels = sound["listener"].values.tolist() if has_names else list(range(values.shape[1]))
+    labels: list[Any] = sound["listener"].values.tolist() if has_names else list(range(values.shape[1]))
     for column, label in zip(values.T, labels, strict=True):
         tones, size, hop = _tones(column, rate, settings)
         lasting = _lasting(tones, 1.0 / settings["frame"])
