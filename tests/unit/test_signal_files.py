@@ -255,6 +255,13 @@ def test_headings_may_have_lines_before_them_and_units_below_them(tmp_path):
     assert [(str(name), one.attrs["units"]) for name, one in back.items()] == [("F", "kN"), ("x", "unknown")]
 
 
+def test_times_without_a_unit_get_it_from_the_user(tmp_path):
+    path = written(tmp_path / "a.csv", "Time,F [N]\n0,1\n1,2\n2,3\n")
+    back = st.read_signal(path, units={"time": "ms"})
+    np.testing.assert_allclose(back.time, [0.0, 1e-3, 2e-3], atol=1e-15)
+    assert back.attrs["units"] == "N"
+
+
 def test_units_in_latin_1_and_decimal_commas_are_read(tmp_path):
     path = written(tmp_path / "a.csv", "t [s];w [µm/s²]\n0,0;1,5\n0,1;2,5\n0,2;3,5\n", "latin-1")
     back = st.read_signal(path, decimal=",")
@@ -343,8 +350,11 @@ def test_a_calibration_needs_units_and_units_a_calibration(tmp_path):
         st.read_signal(path, "u", units="Pa")
     with pytest.raises(ValueError, match=r"^calibration must differ from 0, got 0\.0$"):
         st.read_signal(path, "u", units="Pa", calibration=0.0)
-    with pytest.raises(ValueError, match=r"^channel must be one of those of '.*a.csv': 'u', 'F', got 'v'$"):
-        st.read_signals(path, calibration={"v": 2.0}, units={"v": "Pa"})
+    for given in ({"calibration": {"v": 2.0}}, {"units": {"v": "Pa"}}):
+        with pytest.raises(ValueError, match=r"^(units|calibration) must be by names of channels, 'u', 'F', got 'v'$"):
+            st.read_signals(path, **given)
+    one = st.read_signal(path, "F", calibration={"u": 10.0}, units={"u": "Pa"})
+    assert one.attrs["units"] == "N"
     both = st.read_signals(path, calibration={"u": 10.0}, units={"u": "Pa"})
     assert [one.attrs["units"] for one in both.values()] == ["Pa", "N"]
     assert list(both["u"].values) == [10.0, 20.0, 30.0]
@@ -405,12 +415,15 @@ def test_mdf_files_of_another_writer_are_read(tmp_path):
     slow = asammdf.Signal(np.arange(5.0), np.arange(5) * 0.1, unit="rpm", name="speed")
     with asammdf.MDF(version="4.10") as file:
         file.append([one])
+        file.append([asammdf.Signal(2.0 * noise(), times, unit="m/s^2", name="pad")])
         file.append([slow])
         file.save(tmp_path / "a.mf4")
     back = st.read_signal(tmp_path / "a.mf4", "pad")
     assert back.attrs["units"] == "m/s2"
     np.testing.assert_array_equal(back, noise())
     np.testing.assert_allclose(back.time, times, atol=1e-9)
+    again = st.read_signals(tmp_path / "a.mf4", ["pad", "pad (2)"])
+    np.testing.assert_array_equal(again["pad (2)"], 2.0 * noise())
     with pytest.raises(ValueError, match=r"channels must have the same times, got 'pad' with 500 at 25600 Hz"):
         st.read_signals(tmp_path / "a.mf4")
     with pytest.raises(ValueError, match=r"^path must be an MDF file, got '.*b.mf4': "):

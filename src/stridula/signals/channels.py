@@ -13,6 +13,8 @@ from ..checks import ArgumentError
 
 # Units of a signal whose file does not say them, and of a sound file without a calibration, whose full scale is 1.
 UNKNOWN, FULL_SCALE = "unknown", "FS"
+# Names of a column of times, in small letters.
+TIMES = ("time", "t")
 # Seconds of the units of times.
 SECONDS = {"s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "min": 60.0}
 # Fraction of the interval by which samples may be off an even grid, beyond the last digit of their times.

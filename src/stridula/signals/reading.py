@@ -14,7 +14,7 @@ import xarray as xr
 from ..checks import ArgumentError, finite, listed, positive
 from ..disk import check_path, named
 from . import sound_files
-from .channels import Channel, checked_rate, chosen, plain_units
+from .channels import TIMES, Channel, checked_rate, chosen, plain_units
 
 TABLES = (".csv", ".tsv", ".txt", ".dat", ".asc")
 UNIVERSAL = (".uff", ".unv", ".uf", ".58")
@@ -74,7 +74,7 @@ def read_signal(
     if channel is None and len(found) > 1:
         raise ArgumentError("channel", f"be chosen from {listed(map(repr, names))}", got="none", where=named(path))
     one = found[0] if channel is None else found[chosen(named(path), names, channel)]
-    (calibrated,) = _calibrated(path, [one], calibration, units)
+    (calibrated,) = _calibrated(path, names, [one], calibration, units)
     return _signal(calibrated)
 
 
@@ -120,7 +120,7 @@ def read_signals(
     if len(times) > 1:
         got = listed(f"{one.name!r} with {one.values.size} at {one.rate:g} Hz from {one.start:g} s" for one in found)
         raise ArgumentError("channels", "have the same times", got=got, where=named(path))
-    return xr.Dataset({one.name: _signal(one) for one in _calibrated(path, found, calibration, units)})
+    return xr.Dataset({one.name: _signal(one) for one in _calibrated(path, names, found, calibration, units)})
 
 
 def _channels(path: Any, sample_rate: float | None, units: Any, decimal: str) -> list[Channel]:
@@ -149,10 +149,19 @@ def _channels(path: Any, sample_rate: float | None, units: Any, decimal: str) ->
         raise ArgumentError("path", "have a channel of numbers", str(path), got=f"none in {named(path)}")
     if ending not in TABLES:
         found = [replace(one, rate=checked_rate(named(path), one.rate, rate)) for one in found]
-    wrong = next((one.name for one in found if one.name.lower() == "time"), None)
-    return (
-        found if wrong is None else [replace(one, name="time (channel)") if one.name == wrong else one for one in found]
-    )
+    return _apart(found)
+
+
+def _apart(found: list[Channel]) -> list[Channel]:
+    """Return channels with different names, none of them that of the times."""
+    taken: list[str] = ["time"]
+    for one in found:
+        name, number = one.name, 1
+        while name in taken:
+            number += 1
+            name = f"{one.name} ({number})"
+        taken.append(name)
+    return [replace(one, name=name) for one, name in zip(found, taken[1:], strict=True)]
 
 
 def _table(file: Path, rate: float | None, units: Mapping[str, str], decimal: str) -> list[Channel]:
@@ -179,11 +188,10 @@ def _mdf(file: Path) -> list[Channel]:
     return read_mdf(file)
 
 
-def _calibrated(path: Any, found: list[Channel], calibration: Any, units: Any) -> list[Channel]:
-    """Return channels in the units of the user."""
-    names = [one.name for one in found]
+def _calibrated(path: Any, names: list[str], found: list[Channel], calibration: Any, units: Any) -> list[Channel]:
+    """Return some of the channels of a file in the units of the user."""
     factors = _by_name("calibration", calibration, names, named(path))
-    words = _by_name("units", units, [*names, "time"], named(path))
+    words = _by_name("units", units, [*names, *TIMES], named(path))
     calibrated = []
     for one in found:
         factor, word = factors.get(one.name), words.get(one.name)
@@ -212,7 +220,9 @@ def _by_name(argument: str, given: Any, names: list[str], path: str) -> dict[str
     if not isinstance(given, Mapping):
         return dict.fromkeys(names, given)
     for name in given:
-        chosen(path, names, name) if argument == "calibration" else None
+        if name not in names and str(name).lower() not in names:
+            known = [one for one in names if one not in TIMES]
+            raise ArgumentError(argument, f"be by names of channels, {', '.join(map(repr, known))}", got=repr(name))
     return dict(given)
 
 

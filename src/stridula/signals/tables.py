@@ -15,11 +15,11 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, choice
 from ..disk import LARGEST_TEXT, read
-from .channels import UNKNOWN, Channel, Uneven, checked_rate, grid, plain_units, seconds
+from .channels import TIMES, UNKNOWN, Channel, Uneven, checked_rate, grid, plain_units, seconds
 
 COMMENTS = ("#", "%", "//")
 MISSING = frozenset(("", "nan", "na", "n/a", "null", "none", "-"))
-TIMES = frozenset(("time", "t"))
+
 # A name with its unit in brackets.
 NAMED = re.compile(r"(?P<name>.*?)\s*[\[(](?P<units>[^\])]*)[\])]\s*$")
 # The same between blanks.
@@ -269,7 +269,7 @@ def _grid(
 ) -> tuple[float, float]:
     """Return start [s] and rate [Hz] of the times of a table."""
     name = layout.names[place]
-    word = units.get(name, layout.units[place])
+    word = next((units[key] for key in units if str(key).lower() == name.lower()), layout.units[place])
     scale = seconds(word)
     if scale is None:
         got = f"{word!r}; state it as {name} [s], or in units" if word == UNKNOWN else repr(word)
