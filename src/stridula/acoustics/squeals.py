@@ -51,7 +51,7 @@ def squeal_events(
     frame: float = FRAME,
     prominence: float = PROMINENCE,
 ) -> xr.Dataset:
-    """Return the squeal events of sounds, and the share of stops that squeal.
+    """Return the squeal events of sounds.
 
     A squeal is a tone with an A-weighted level of 70 dB or more between 1.25 kHz (2 kHz without a suspension) and
     16 kHz, as SAE J2521 defines it. Tones are sought in frames under a Hann window that overlap by three quarters:

@@ -27,7 +27,7 @@ MOST = 10_000.0
 def order_spectrum(
     signal: xr.DataArray, speed: xr.DataArray, *, highest: float = HIGHEST, revolutions: float = REVOLUTIONS
 ) -> xr.DataArray:
-    """Return the orders of a signal over time, from the speed of a shaft.
+    """Return the orders of a signal over a speed.
 
     The angle of the shaft is the integral of its speed. In windows of whole `revolutions` that overlap by half, the
     Fourier integral is taken over the angle under a Hann window, at the samples themselves: nothing is resampled, so a

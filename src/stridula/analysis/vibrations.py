@@ -53,7 +53,7 @@ def vibration_regime(
     frame: float = Thresholds.frame,
     rate: float = Thresholds.rate,
 ) -> xr.Dataset:
-    """Return the regime that a vibration alone suggests, and what it cannot show.
+    """Return the regime that a vibration alone suggests.
 
     A vibration that dies away, or is no stronger than the `floor`, is quiet. Else it is squeal if its part above the
     lowest tone is tonal; stick-slip if it recurs in cycles slower than that; and judder if it does neither. Without the

@@ -32,7 +32,7 @@ def read_signal(
     sample_rate: float | None = None,
     decimal: str = ".",
 ) -> xr.DataArray:
-    """Read a measured signal from a sound file, a table or a universal file.
+    """Read a channel of a file as a signal.
 
     The ending of the name selects the format: ``.wav``, ``.flac`` and other sound files; ``.csv``, ``.tsv``, ``.txt``
     and ``.dat``; ``.uff`` and ``.unv`` (dataset 58); ``.tdms`` and ``.mf4`` with the extra ``signals``. Measures and

@@ -37,7 +37,7 @@ def write_signal(
     full_scale: float | str = NORMALISED,
     subtype: str = "PCM_24",
 ) -> None:
-    """Write signals to a sound file, a table or a universal file.
+    """Write signals to a file, in the format of its ending.
 
     The ending of the name selects the format: ``.wav``, ``.flac`` and ``.mp3``; ``.csv``; ``.uff`` and ``.unv``
     (dataset 58 in double precision). `read_signal` and `read_signals` read the file back in the same units. A sound
