@@ -72,6 +72,12 @@ def test_a_vibration_that_dies_away_or_is_as_faint_as_the_floor_is_quiet():
     assert analysis.vibration_regime(vibration(np.zeros(TIME.size))).regime == "quiet"
 
 
+def test_a_squeal_that_ends_within_the_signal_is_squeal():
+    episode = (TIME > 0.5) & (TIME < 0.9)
+    tone = np.sin(2.0 * np.pi * 900.0 * TIME) * episode
+    assert analysis.vibration_regime(vibration(tone + 1e-3 * noise())).regime == "squeal"
+
+
 @cache
 def case(name):
     return st.load_scenario(name).simulate()

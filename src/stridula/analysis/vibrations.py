@@ -31,6 +31,8 @@ RECURS, LONGEST = 0.5, 0.4
 # Length of the windows of an envelope [s], and ratios of the level of bursts to the threshold and to that between them.
 SMOOTHING, HALF, CLEAR = 5e-3, 2.0, 10.0
 SHORTEST_STOP = 20e-3
+# A vibration that dies away is strongest in this share of the time at the beginning [1].
+BEGINNING = 0.2
 # Percentiles of the envelope that stand for bursts and for stops.
 LOUD, SILENT = 90.0, 10.0
 MEANINGS = {
@@ -55,9 +57,10 @@ def vibration_regime(
 ) -> xr.Dataset:
     """Return the regime that a vibration alone suggests.
 
-    A vibration that dies away, or is no stronger than the `floor`, is quiet. Else it is squeal if its part above the
-    lowest tone is tonal; stick-slip if it recurs in cycles slower than that; and judder if it does neither. Without the
-    status of the contact the last two are not told apart for certain: their confidence is at most 0.75.
+    A vibration that dies away from the beginning on, or is no stronger than the `floor`, is quiet. Else it is squeal if
+    its part above the lowest tone is tonal; stick-slip if it recurs in cycles slower than that; and judder if it does
+    neither. Without the status of the contact the last two are not told apart for certain: their confidence is at most
+    0.75.
 
     Parameters
     ----------
@@ -224,7 +227,8 @@ def _decided(level: float, floor: float, heard: Frames, recurrence: float, limit
     """Return the regime and its margin, in factors of two from the nearest threshold."""
     loud = above(level, 2.0 * floor) if floor > 0.0 else (math.inf if level > 0.0 else -math.inf)
     grown = above(heard.growth, KEPT)
-    lasts = min(loud, grown if math.isfinite(heard.growth) else math.inf)
+    begins = heard.amplitude.size and np.argmax(heard.amplitude) < BEGINNING * heard.amplitude.size
+    lasts = min(loud, grown if begins and math.isfinite(heard.growth) else math.inf)
     if lasts < 0.0:
         return QUIET, -lasts
     audible = above(heard.level / level, limits.faint)
