@@ -69,6 +69,7 @@ _HOME = {
     "doubtful": ("DoubtfulValue",),
     "drives": ("Force", "Gravity", "ImposedVelocity", "InitialEquilibrium", "InitialState", "InitialVelocity"),
     "histories": ("Constant", "Harmonic", "Ramp", "Sampled"),
+    "signals": ("read_signal", "read_signals", "write_signal"),
     "system": ("System",),
     "records": (
         "Acceleration",
@@ -98,6 +99,7 @@ _HOME = {
     ),
     "acoustics.levels": ("equivalent_level", "harmonic_levels", "sound_level", "third_octave_levels"),
     "acoustics.sensation": ("loudness", "loudness_over_time", "roughness", "sharpness"),
+    "acoustics.squeals": ("squeal_events",),
     "acoustics.listening": ("PlayableSound", "listen"),
     "acoustics.wav": ("SoundFile", "read_wav", "write_wav"),
     "analysis.mobilities": ("mobility",),

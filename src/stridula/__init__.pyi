@@ -30,6 +30,7 @@ from .acoustics.sensation import loudness as loudness
 from .acoustics.sensation import loudness_over_time as loudness_over_time
 from .acoustics.sensation import roughness as roughness
 from .acoustics.sensation import sharpness as sharpness
+from .acoustics.squeals import squeal_events as squeal_events
 from .acoustics.wav import SoundFile as SoundFile
 from .acoustics.wav import read_wav as read_wav
 from .acoustics.wav import write_wav as write_wav
@@ -141,6 +142,9 @@ from .scenarios import list_scenarios as list_scenarios
 from .scenarios import load_scenario as load_scenario
 from .scenarios import scenario_schema as scenario_schema
 from .scenarios import scenario_text as scenario_text
+from .signals import read_signal as read_signal
+from .signals import read_signals as read_signals
+from .signals import write_signal as write_signal
 from .studies import CalibrationProgress as CalibrationProgress
 from .studies import Grid as Grid
 from .studies import LatinHypercube as LatinHypercube

@@ -21,6 +21,8 @@ NEEDED = {
     "starlette": ("the page needs", "page"),
     "uvicorn": ("the page needs", "page"),
     "websockets": ("the page needs", "page"),
+    "nptdms": ("TDMS files need", "signals"),
+    "asammdf": ("MDF files need", "signals"),
     "mosqito": ("loudness, sharpness and roughness need", "psycho"),
     "pyvista": ("views need", "view"),
     "distributed": ("other machines need", "distributed"),

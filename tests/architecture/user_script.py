@@ -55,6 +55,11 @@ written = assert_type(st.write_wav("run.wav", heard), st.SoundFile)
 assert_type(written.sample_rate, int)
 assert_type(st.read_wav("run.wav"), xr.DataArray)
 assert_type(st.sound_level(heard), xr.DataArray)
+st.write_signal("heard.csv", heard.isel(listener=0))
+assert_type(st.read_signals("heard.csv"), xr.Dataset)
+measured = assert_type(st.read_signal("heard.csv"), xr.DataArray)
+assert_type(st.squeal_events(measured, highest=8e3, threshold=20.0), xr.Dataset)
+assert_type(analysis.vibration_bursts(measured), NDArray[Any])
 
 try:
     st.Coulomb(-1.0)

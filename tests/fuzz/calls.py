@@ -69,6 +69,7 @@ def check(given: Given) -> str:
     name, arguments = given
     with folder():
         Path("file.txt").write_text("x")
+        Path("table.csv").write_text("t [s],a [N]\n0.0,1\n0.1,2\n")
         values = {word: _thing(kind, value) for word, (kind, value) in arguments.items()}
         try:
             return outcome(lambda: _callables()[name](**values))
@@ -190,6 +191,7 @@ THINGS: dict[str, Callable[[], Any]] = {
     "bare signal": lambda: xr.DataArray(np.ones(50), dims="time"),
     "scalar signal": lambda: xr.DataArray(1.0),
     "sound": _sound,
+    "speed": lambda: (_record()["normal_force"] * 0.0 + 1e4).assign_attrs(units="rpm"),
     "one sound": lambda: _sound().isel(listener=0),
     "loci": _loci,
     "effects": _effects,
@@ -244,7 +246,20 @@ def _things(*names: str) -> tuple[tuple[str, Any], ...]:
 _NUMBERS = _plain(0.1, 1.0, 0.5, 1e-3)
 _RUNS = _things("record", "cut record", "two contacts")
 _SIGNALS = _things("signal", "one sound", "constant signal")
-_NAMES = _plain("file.txt", "new.nc", "new.csv", "new.mat", "new.png", "new.wav", "missing/new.nc", "squeal", "")
+_NAMES = _plain(
+    "file.txt",
+    "new.nc",
+    "new.csv",
+    "new.mat",
+    "new.png",
+    "new.wav",
+    "new.flac",
+    "new.uff",
+    "table.csv",
+    "missing/new.nc",
+    "squeal",
+    "",
+)
 _SYSTEMS = _things("system")
 _STATUS = _plain("sticking", "sliding", "separated")
 # Kinds of arguments by name, valid in at least one function.
@@ -279,7 +294,14 @@ FITTING: dict[str, tuple[tuple[str, Any], ...]] = {
     "probes": _things("probes"),
     "scheme": _things("scheme"),
     "contact_solve": _things("solve"),
-    "pressure": _things("sound", "one sound"),
+    **dict.fromkeys(("pressure", "sound"), _things("sound", "one sound")),
+    "speed": _things("speed"),
+    "stops": _things("intervals"),
+    "units": _plain("Pa", {"a": "N"}),
+    "calibration": _plain(2.0, {"a": 1.0}),
+    "channel": _plain("a"),
+    "channels": _plain(["a"]),
+    "decimal": _plain(".", ","),
     "intervals": _things("intervals"),
     "status": _STATUS,
     "limits": _things("thresholds"),

@@ -11,11 +11,11 @@ import scipy.io
 
 import stridula as st
 from stridula import disk
-from stridula.acoustics import wav
 from stridula.bodies import limits
 from stridula.bodies.revolution.profiles import MeshProfile
 from stridula.cli.points import points_of
 from stridula.records import files
+from stridula.signals import sound_files
 
 POINTS = {"tip": (0, 1)}
 READERS = {
@@ -141,7 +141,7 @@ def test_sounds_that_unpack_to_more_than_4_gib_are_refused(tmp_path, monkeypatch
     path = tmp_path / "sound.wav"
     soundfile.write(path, np.zeros(100_000), 48000, format="FLAC")
     assert st.read_wav(path, full_scale=1.0).sizes["time"] == 100_000
-    monkeypatch.setattr(wav, "LARGEST", 799_999)
+    monkeypatch.setattr(sound_files, "LARGEST", 799_999)
     with pytest.raises(ValueError, match=r"^path must have samples of at most .* GiB, got .* GiB in '.*sound.wav'$"):
         st.read_wav(path, full_scale=1.0)
 

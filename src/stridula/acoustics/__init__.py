@@ -22,6 +22,7 @@ _HOME = {
     "roughness": "sensation",
     "sharpness": "sensation",
     "sound_level": "levels",
+    "squeal_events": "squeals",
     "third_octave_levels": "levels",
     "write_wav": "wav",
 }

@@ -15,6 +15,7 @@ from .sensation import loudness as loudness
 from .sensation import loudness_over_time as loudness_over_time
 from .sensation import roughness as roughness
 from .sensation import sharpness as sharpness
+from .squeals import squeal_events as squeal_events
 from .wav import SoundFile as SoundFile
 from .wav import read_wav as read_wav
 from .wav import write_wav as write_wav

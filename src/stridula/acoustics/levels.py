@@ -8,14 +8,17 @@ from scipy.fft import next_fast_len, rfft, rfftfreq
 
 from ..arrays import Array
 from ..checks import ArgumentError, choice, count, positive
-from .pressures import channels, check_length, check_rate, of_listeners
+from .pressures import channels, check_length, check_rate, is_enough, of_listeners
 from .weighting import TIME_CONSTANTS, a_weighted, time_weighted
 
 # Reference sound pressure [Pa] (ISO 1683).
 REFERENCE = 20e-6
 WEIGHTINGS = ("Z", "A")
-# Requirements of weighted levels: samples up to 20 kHz, and a period of 20 Hz.
-LOWEST_RATE, SHORTEST = 40e3, 0.05
+# Requirements of weighted levels: samples up to 10 kHz, beyond which class 2 of IEC 61672-1 requires nothing, and a
+# period of 20 Hz.
+LOWEST_RATE, SHORTEST = 20e3, 0.05
+# End of the audible range [Hz]: levels of sounds that end below it say so.
+AUDIBLE = 20e3
 # Order of the band filters.
 ORDER = 6
 # Numbers of the bands from 25 Hz to 20 kHz; their exact centres are 10^(n/10) Hz.
@@ -31,12 +34,13 @@ def equivalent_level(pressure: xr.DataArray, weighting: str = "Z") -> xr.DataArr
     pressure : xarray.DataArray, shape (time,) or (time, listener)
         Sound pressure [Pa].
     weighting : {"Z", "A"}, optional
-        None, or A of IEC 61672-1, which requires samples at 40 kHz or more.
+        None, or A of IEC 61672-1, which requires samples at 20 kHz or more.
 
     Returns
     -------
     xarray.DataArray, shape () or (listener,)
-        Level [dB] re 20 µPa; minus infinity for silence.
+        Level [dB] re 20 µPa; minus infinity for silence. Below 40 kHz its attribute ``bandwidth`` [Hz] and its
+        ``long_name`` say up to which frequency sound is counted.
 
     Raises
     ------
@@ -45,7 +49,8 @@ def equivalent_level(pressure: xr.DataArray, weighting: str = "Z") -> xr.DataArr
     """
     squares = np.mean(_weighted(pressure, weighting)[0] ** 2, axis=0)
     name = "LAeq" if weighting == "A" else "Leq"
-    return of_listeners(pressure, decibels(squares), name, "dB", f"equivalent sound pressure level {name} re 20 µPa")
+    words = f"equivalent sound pressure level {name} re 20 µPa"
+    return _up_to(of_listeners(pressure, decibels(squares), name, "dB", words), pressure)
 
 
 def sound_level(pressure: xr.DataArray, weighting: str = "A", response: str = "fast") -> xr.DataArray:
@@ -63,7 +68,7 @@ def sound_level(pressure: xr.DataArray, weighting: str = "A", response: str = "f
     Returns
     -------
     xarray.DataArray, shape of `pressure`
-        Level [dB] re 20 µPa. Its largest value is LAFmax.
+        Level [dB] re 20 µPa. Its largest value is LAFmax. Its attributes are as for `equivalent_level`.
 
     Raises
     ------
@@ -75,7 +80,7 @@ def sound_level(pressure: xr.DataArray, weighting: str = "A", response: str = "f
     levels = decibels(time_weighted(values**2, rate, response)).reshape(pressure.shape)
     name = f"L{weighting}{response[0].upper()}"
     words = {"units": "dB", "long_name": f"sound level {name} re 20 µPa"}
-    return pressure.copy(data=levels).rename(name).assign_attrs(words)
+    return _up_to(pressure.copy(data=levels).rename(name).assign_attrs(words), pressure)
 
 
 def harmonic_levels(pressure: xr.DataArray, most: int = 40) -> xr.DataArray:
@@ -181,6 +186,14 @@ def decibels(squares: Array) -> Array:
     """Return the levels re 20 µPa [dB] of mean squares [Pa²]."""
     with np.errstate(divide="ignore"):
         return np.asarray(10.0 * np.log10(squares / REFERENCE**2))
+
+
+def _up_to(level: xr.DataArray, pressure: xr.DataArray) -> xr.DataArray:
+    """Return a level with the end of the band of its sound, where that is below the audible range."""
+    reach = min(0.5 * channels(pressure)[1], float(pressure.attrs.get("bandwidth", np.inf)))
+    if is_enough(reach, AUDIBLE):
+        return level
+    return level.assign_attrs(bandwidth=reach, long_name=f"{level.attrs['long_name']}, up to {reach / 1e3:.4g} kHz")
 
 
 def _weighted(pressure: xr.DataArray, weighting: str) -> tuple[Array, float]:

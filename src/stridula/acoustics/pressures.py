@@ -7,6 +7,7 @@ import xarray as xr
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, at_most, instance
+from ..signals.channels import FULL_SCALE
 
 # Fraction of the sample interval by which samples may be off an even grid: rounding of times causes far less.
 EVEN = 1e-3
@@ -42,7 +43,8 @@ def channels(pressure: xr.DataArray) -> tuple[Array, float]:
         )
     units = pressure.attrs.get("units", "Pa")
     if units != "Pa":
-        raise ArgumentError("pressure", "be in Pa", units)
+        way = ", relative to full scale: give read_signal its calibration and units" if units == FULL_SCALE else ""
+        raise ArgumentError("pressure", "be in Pa", units, got=f"{units!r}{way}")
     values = pressure.values.astype(float).reshape(pressure.shape[0], -1)
     if not np.isfinite(values).all():
         raise ArgumentError(

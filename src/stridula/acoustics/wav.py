@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import io
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
-from ..arrays import Array
 from ..checks import ArgumentError, at_least, choice, positive
-from ..disk import check_ending, check_writable, read, write
-from ..extras import named_extras
+from ..disk import check_ending, check_writable, write
+from ..signals.sound_files import SCALE, STEPS, decoded, encoded
 from .pressures import channels
 from .sample_rates import resampled
 
@@ -23,11 +20,6 @@ SUBTYPES = ("PCM_24", "FLOAT")
 NORMALISED = "normalised"
 # Peak of a normalised file below full scale [dB]: the signal that players make may exceed its samples.
 HEADROOM = 1.0
-# Full scale of integers, one step beyond the largest value.
-# Most bytes of the samples of a file that is read, as floats.
-LARGEST = 4 * 1024**3
-STEPS = {"PCM_16": 2**15, "PCM_24": 2**23}
-SCALE = re.compile(r"stridula: full_scale_pascal=(\S+) start_second=(\S+)")
 
 
 @dataclass(frozen=True)
@@ -175,21 +167,6 @@ def scale_comment(scale: float, start: float) -> str:
     return f"stridula: full_scale_pascal={scale!r} start_second={start!r}"
 
 
-def encoded(samples: Array, rate: int, subtype: str, comment: str) -> memoryview:
-    """Return samples over full scale, shape (samples, channels), as a WAV file with a comment."""
-    with named_extras():
-        import soundfile
-
-    content = io.BytesIO()
-    options = {"samplerate": rate, "channels": samples.shape[1], "format": "WAV", "subtype": subtype}
-    with soundfile.SoundFile(content, "w", **options) as file:
-        file.comment = comment
-        # Integers rounded here, which lie in the upper bytes.
-        steps = STEPS.get(subtype)
-        file.write(np.rint(samples * steps).astype(np.int32) * (2**31 // steps) if steps else samples)
-    return content.getbuffer()
-
-
 def read_wav(path: str | Path, full_scale: float | None = None) -> xr.DataArray:
     """Read a sound file back in pascals.
 
@@ -213,26 +190,7 @@ def read_wav(path: str | Path, full_scale: float | None = None) -> xr.DataArray:
     OSError
         If the file cannot be read.
     """
-    with named_extras():
-        import soundfile
-
-    content = read(path)
-    try:
-        with soundfile.SoundFile(io.BytesIO(content)) as file:
-            size = 8 * file.frames * file.channels
-            if size > LARGEST:
-                got = f"{at_least(size / 1024**3, 3)} GiB in {str(path)!r}"
-                raise ArgumentError("path", f"have samples of at most {LARGEST // 1024**3} GiB", str(path), got=got)
-            comment, rate, samples = file.comment, file.samplerate, file.read(dtype="float64", always_2d=True)
-    except (soundfile.SoundFileError, TypeError) as error:
-        # The full message also names the bytes in memory.
-        reason = getattr(error, "error_string", error)
-        raise ArgumentError("path", "be a sound file", str(path), got=f"{str(path)!r}: {reason}") from error
-    wrong = np.argwhere(~np.isfinite(samples))
-    if wrong.size:
-        at, channel = wrong[0].tolist()
-        got = f"{samples[at, channel]} in {str(path)!r} at {at / rate:.6g} s"
-        raise ArgumentError("path", "have finite samples", str(path), got=got)
+    samples, rate, comment = decoded(path)
     found = SCALE.search(comment)
     if full_scale is None and found is None:
         raise ArgumentError(

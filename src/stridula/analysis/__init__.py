@@ -2,6 +2,7 @@
 
 from .bowed import MOTIONS, bowed_motion
 from .levels import largest_jump, peak_level, swing
+from .orders import order_spectrum
 from .phases import advance, bursts, complete, longest_unchanged, phases, settling_time, status_share, stops
 from .poincare import poincare_section
 from .regime_measures import Thresholds
@@ -15,6 +16,7 @@ from .spectra import (
     tones,
 )
 from .surfaces import surface
+from .vibrations import vibration_bursts, vibration_regime
 from .wear import worn
 
 __all__ = [
@@ -31,6 +33,7 @@ __all__ = [
     "frequency_resolution",
     "largest_jump",
     "longest_unchanged",
+    "order_spectrum",
     "peak_level",
     "phases",
     "poincare_section",
@@ -43,5 +46,7 @@ __all__ = [
     "surface",
     "swing",
     "tones",
+    "vibration_bursts",
+    "vibration_regime",
     "worn",
 ]

@@ -202,6 +202,8 @@ def _is_usable(run: PlainRecord) -> bool:
 
 def _checked(run: Any) -> PlainRecord:
     """Return the plain arrays of a record; raise ValueError unless it has the required variables."""
+    if isinstance(run, xr.DataArray):
+        raise ArgumentError("run", "be a record", run, got="a signal: analysis.vibration_regime takes one")
     given = run.labelled(*run.variables) if hasattr(run, "labelled") else run
     held = by_point(checked.record("run", given, *NEEDED, least=2))
     if "landings" in held.variables:
@@ -233,7 +235,7 @@ def decide(found: Measures, limits: Thresholds, ended: str = "finished") -> tupl
     if ended == LEFT:
         return LEFT, 1.0
     name, margin = _at_rest(found, limits) if found.last_status >= 0 else _on_the_move(found, limits)
-    margin = min(margin, abs(_above(found.unsettled, limits.rest)))
+    margin = min(margin, abs(above(found.unsettled, limits.rest)))
     if ended in FAILED or found.is_short:
         margin = 0.0
     return name, 0.5 + 0.5 * min(1.0, margin)
@@ -243,14 +245,14 @@ def _at_rest(found: Measures, limits: Thresholds) -> tuple[str, float]:
     """Return the regime of a run whose status settles, and its margin."""
     if found.last_status != 2:
         return (STICKS if found.last_status == 1 else LEFT), math.inf
-    tonal, heard = _odds_above(found.tonality, limits.tonal), _above(found.audibility, limits.faint)
-    kept = min(tonal, heard, _above(found.growth, KEPT))
-    growing = min(tonal, _above(found.audibility, BUDDING * limits.faint), _above(found.growth, GROWING))
+    tonal, heard = odds_above(found.tonality, limits.tonal), above(found.audibility, limits.faint)
+    kept = min(tonal, heard, above(found.growth, KEPT))
+    growing = min(tonal, above(found.audibility, BUDDING * limits.faint), above(found.growth, GROWING))
     hidden = min(
-        _above(found.loss, limits.lossy),
-        _above(found.loss_growth, KEPT),
-        -_above(found.swing, limits.faint),
-        _above(found.tone, limits.lowest_tone),
+        above(found.loss, limits.lossy),
+        above(found.loss_growth, KEPT),
+        -above(found.swing, limits.faint),
+        above(found.tone, limits.lowest_tone),
     )
     squeals = max(kept, growing, hidden)
     return (SQUEALS, squeals) if squeals >= 0.0 else (SLIDES, -squeals)
@@ -259,33 +261,33 @@ def _at_rest(found: Measures, limits: Thresholds) -> tuple[str, float]:
 def _on_the_move(found: Measures, limits: Thresholds) -> tuple[str, float]:
     """Return the regime of a run whose status keeps changing, and its margin."""
     # A cycle of states this fast is a limit cycle, even if its forces are faint.
-    heard = max(_above(found.audibility, limits.faint), _above(found.change_rate, limits.lowest_tone))
-    sustained = math.inf if math.isnan(found.periods) else _above(found.periods, SUSTAINED)
-    squeals = min(heard, _odds_above(found.tonality, limits.tonal), sustained)
+    heard = max(above(found.audibility, limits.faint), above(found.change_rate, limits.lowest_tone))
+    sustained = math.inf if math.isnan(found.periods) else above(found.periods, SUSTAINED)
+    squeals = min(heard, odds_above(found.tonality, limits.tonal), sustained)
     if squeals >= 0.0:
         return SQUEALS, squeals
     # The share is relative to the time without sticking, so that the length of stick phases does not matter.
     moving = found.separated + found.sliding
-    opens = _odds_above(found.separated / moving if moving else 0.0, limits.rare)
+    opens = odds_above(found.separated / moving if moving else 0.0, limits.rare)
     if opens >= 0.0:
         return JUDDERS, min(-squeals, opens)
     # A rare state is incidental, unless it recurs.
-    sticks, returns = _odds_above(found.sticking, limits.rare), _above(found.slips, 2.0)
+    sticks, returns = odds_above(found.sticking, limits.rare), above(found.slips, 2.0)
     if sticks < 0.0 and returns < 0.0:
         return SLIDES, min(-squeals, -opens, -sticks)
-    holds = _odds_above(found.sticking, 1.0 - limits.rare)
+    holds = odds_above(found.sticking, 1.0 - limits.rare)
     if holds >= 0.0 and returns < 0.0:
         return STICKS, min(-squeals, holds)
     return SLIPS, min(-squeals, -opens, max(returns, min(sticks, -holds)))
 
 
-def _above(value: float, threshold: float) -> float:
+def above(value: float, threshold: float) -> float:
     """Return the number of factors of two by which a measure is above its threshold; an unknown one is below it."""
     return math.log2(value / threshold) if value > 0.0 else -math.inf
 
 
-def _odds_above(share: float, threshold: float) -> float:
+def odds_above(share: float, threshold: float) -> float:
     """Return the number of factors of two by which the odds of a share are above those of its threshold."""
     if not 0.0 < share < 1.0:
         return math.inf if share >= 1.0 else -math.inf
-    return _above(share / (1.0 - share), threshold / (1.0 - threshold))
+    return above(share / (1.0 - share), threshold / (1.0 - threshold))

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..acoustics.wav import encoded, normalised_scale, scale_comment
+from ..acoustics.wav import normalised_scale, scale_comment
 from ..arrays import Array
 from ..checks import ArgumentError
 from ..records.by_surface import groups
@@ -30,6 +30,7 @@ from ..records.variables import (
     described,
     status_attributes,
 )
+from ..signals.sound_files import encoded
 from ..version import __version__
 from .parts import Part
 from .playable import Playable

@@ -103,6 +103,9 @@ def print_levels(pressure: xr.DataArray) -> None:
         table.add_row(*row)
     console = wide_console()
     console.print(table)
+    reach = equivalent_level(pressure).attrs.get("bandwidth") if len(columns) > 1 else None
+    if reach is not None:
+        console.print(f"the levels are of sound up to {at_most(reach / 1e3, 4)} kHz", markup=False, highlight=False)
     if left_out:
         console.print(_too_little(left_out, lasts, rate), markup=False, highlight=False, soft_wrap=True)
     if not is_available():

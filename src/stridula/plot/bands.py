@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..acoustics.levels import BANDS, LOWEST_RATE, NOMINAL, SHORTEST, equivalent_level, third_octave_levels
+from ..acoustics.levels import AUDIBLE, BANDS, NOMINAL, SHORTEST, equivalent_level, third_octave_levels
 from ..acoustics.pressures import channels, positions
 from ..arrays import Array
 from ..checks import ArgumentError, positive
@@ -93,7 +93,7 @@ def _labels(pressure: xr.DataArray, lasts: float, rate: float) -> list[str]:
     names = ["" if count == 1 else f"listener {number}" for number in range(1, count + 1)]
     if places is not None:
         names = [f"({', '.join(f'{x:.4g}' for x in place)}) m" for place in places]
-    if rate < LOWEST_RATE or lasts < SHORTEST:
+    if rate < 2.0 * AUDIBLE or lasts < SHORTEST:
         return names
     loud: Array = np.atleast_1d(equivalent_level(pressure, "A").values)
     return [f"{name}{': ' * bool(name)}LAeq {level:.1f} dB" for name, level in zip(names, loud, strict=True)]
