@@ -125,6 +125,7 @@ _HOME = {
         "follow_cycle",
         "mode_probability",
         "mode_sensitivity",
+        "mode_surrogate",
         "orbit_diagram",
         "regime_probability",
         "root_loci",

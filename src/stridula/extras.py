@@ -23,6 +23,7 @@ NEEDED = {
     "websockets": ("the page needs", "page"),
     "mosqito": ("loudness, sharpness and roughness need", "psycho"),
     "pyvista": ("views need", "view"),
+    "openturns": ("surrogates of modes need", "surrogate"),
     "distributed": ("other machines need", "distributed"),
 }
 

@@ -25,6 +25,7 @@ _HOME = {
     "mean_and_interval": "ensembles",
     "mode_probability": "growth_probability",
     "mode_sensitivity": "mode_derivatives",
+    "mode_surrogate": "surrogates",
     "orbit_diagram": "orbit_diagrams",
     "regime_probability": "probabilities",
     "root_loci": "loci",

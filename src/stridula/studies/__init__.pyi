@@ -22,6 +22,7 @@ from .random_points import RandomPoints as RandomPoints
 from .sobol import sensitivity as sensitivity
 from .step_checks import StepCheck as StepCheck
 from .step_checks import check_step as check_step
+from .surrogates import mode_surrogate as mode_surrogate
 from .surveys import squeal_survey as squeal_survey
 from .sweeps import sweep as sweep
 from .tables import survey_table as survey_table

@@ -123,7 +123,7 @@ def mode_probability(
     points = RandomPoints(uncertain, count("samples", samples), correlations, seed)
     within("gap", gap, 0.0, 1.0, ends=False)
     within("confidence", confidence, 0.0, 1.0, ends=False)
-    given = None if edges is None else _edges(edges)
+    given = None if edges is None else checked_edges("edges", edges)
     task: dict[str, Any] = {
         "highest": math.inf if highest is None else _frequency("highest", highest),
         "velocity": None if velocity is None else one_or_each("velocity", plain_python(velocity), finite),
@@ -273,11 +273,12 @@ def _notes(good: Sequence[Outcome]) -> list[str]:
     return found
 
 
-def _edges(given: Any) -> list[float]:
+def checked_edges(name: str, given: Any) -> list[float]:
+    """Return rising frequencies [Hz] from numbers or texts."""
     if isinstance(given, str) or not hasattr(given, "__len__") or not len(given):
-        raise ArgumentError("edges", "be rising frequencies", given)
-    found = [_frequency(f"edges[{number}]", one) for number, one in enumerate(given)]
-    rising("edges", found)
+        raise ArgumentError(name, "be rising frequencies", given)
+    found = [_frequency(f"{name}[{number}]", one) for number, one in enumerate(given)]
+    rising(name, found)
     return found
 
 

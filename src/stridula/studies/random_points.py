@@ -72,8 +72,11 @@ class RandomPoints:
 
     def scores(self) -> Array:
         """Return the normal numbers whose quantile levels are those of the points, shape (points, keys)."""
-        drawn = np.random.default_rng(self.seed).standard_normal((self.count, len(self.distributions)))
-        return np.asarray(drawn @ np.linalg.cholesky(self.correlation).T)
+        return np.asarray(self.independent_scores() @ np.linalg.cholesky(self.correlation).T)
+
+    def independent_scores(self) -> Array:
+        """Return independent normal numbers, of which the correlated ones are combinations, shape (points, keys)."""
+        return np.random.default_rng(self.seed).standard_normal((self.count, len(self.distributions)))
 
     def values(self) -> dict[str, list[Any]]:
         """Return the values of each key at all points."""

@@ -14,7 +14,7 @@ from ..analysis.regimes import REGIMES
 from ..arrays import Array
 from ..checks import ArgumentError, count, within
 from ..records.variables import described
-from .distributions import distributions_of, values_of
+from .distributions import LOWEST_SHARE, distributions_of, values_of
 from .probabilities import BOUNDS, shares_of
 from .sources import SystemOf
 from .sweeps import sweep
@@ -88,13 +88,13 @@ def sensitivity(
     count("seed", seed, low=0)
     count("resamples", resamples, high=MOST_RESAMPLES)
     within("confidence", confidence, 0.0, 1.0, ends=False)
-    shares = _shares(len(named), samples, seed)
+    shares = shares_for_indices(len(named), samples, seed)
     columns = [values_of(one, column) for one, column in zip(named.values(), shares.T, strict=True)]
     points = [dict(zip(named, row, strict=True)) for row in zip(*columns, strict=True)]
     found = sweep(scenario, points, measures, progress=progress, **options)
     outputs = _outputs(found)
     keys = list(named)
-    data: dict[str, Any] = _indices(outputs, len(keys), samples, seed, confidence, resamples)
+    data: dict[str, Any] = sobol_indices(outputs, len(keys), samples, seed, confidence, resamples)
     coordinates: dict[str, Any] = {"output": list(outputs), "parameter": keys, "bound": list(BOUNDS)}
     messages = failures(found)
     data["runs"], data["failed"] = ((), len(points)), ((), len(messages))
@@ -108,14 +108,15 @@ def sensitivity(
     return xr.Dataset(data, coordinates, origin | {"confidence": confidence, "samples": samples, "seed": seed})
 
 
-def _shares(parameters: int, samples: int, seed: int) -> Array:
+def shares_for_indices(parameters: int, samples: int, seed: int) -> Array:
     """Return the points as quantile levels: set A, set B, then A with each column taken from B in turn."""
     drawn = scipy.stats.qmc.Sobol(2 * parameters, rng=np.random.default_rng(seed)).random(samples)
     first, second = drawn[:, :parameters], drawn[:, parameters:]
     mixed = [first.copy() for _ in range(parameters)]
     for number, one in enumerate(mixed):
         one[:, number] = second[:, number]
-    return np.concatenate([first, second, *mixed])
+    # The quantile at exactly 0 may be infinite.
+    return np.clip(np.concatenate([first, second, *mixed]), LOWEST_SHARE, 1.0 - LOWEST_SHARE)
 
 
 def _outputs(found: xr.Dataset) -> dict[str, Array]:
@@ -131,7 +132,7 @@ def _outputs(found: xr.Dataset) -> dict[str, Array]:
     return outputs
 
 
-def _indices(
+def sobol_indices(
     outputs: Mapping[str, Array], parameters: int, samples: int, seed: int, confidence: float, resamples: int
 ) -> dict[str, Any]:
     """Return the indices of each output with their intervals, and the number of samples used."""
