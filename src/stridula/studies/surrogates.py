@@ -82,6 +82,7 @@ def mode_surrogate(
         Distribution of each parameter by key, as for `RandomPoints`.
     band : sequence of float or str
         Lowest and highest frequency of the modes [Hz], with the same number of modes between, at most 6, at all points.
+        Modes that decay faster than at half the width of the band [rad/s] are left out.
     kind : {"chaos", "kriging"}, optional
         Polynomial chaos, whose terms are selected by least angle regression and their corrected error of leaving one
         point out (Blatman & Sudret 2011, J. Comput. Phys. 230), or kriging with a linear trend and Matérn's covariance.
@@ -171,7 +172,9 @@ class _Task:
             if known.exponents is None:
                 raise ArgumentError("uncertain", "let the contacts slide at every point", got=known.equilibrium.kind)
             low, high = (2.0 * np.pi * end for end in self.band)
-            inside = known.exponents[(known.exponents.imag >= low) & (known.exponents.imag <= high)]
+            # Motions that creep pass through every band of frequency, far below the others.
+            slow = known.exponents[known.exponents.real >= -0.5 * (high - low)]
+            inside = slow[(slow.imag >= low) & (slow.imag <= high)]
             inside = inside[np.lexsort((inside.real, inside.imag))]
             outcome["values"]["modes"] = [[float(one.real), float(one.imag)] for one in inside]
             outcome["values"]["beyond"] = self.band[0] > highest_cutoff(system)
@@ -275,7 +278,7 @@ class _Fit:
             words = f"hold the same number of modes, 1 to {MOST_MODES}, at every point"
             got = f"{sizes[0]} to {sizes[-1]}" if len(sizes) > 1 else f"{sizes[0]}"
             raise ArgumentError("band", words, self.band, got=f"{got} from {self.band[0]:g} to {self.band[1]:g} Hz")
-        parts = np.array([one["values"]["modes"] for one in outcomes])
+        parts = np.array([one["values"]["modes"] for one in outcomes], dtype=float)
         return np.asarray(parts[..., 0] + 1.0j * parts[..., 1])
 
     @property
