@@ -93,9 +93,9 @@ def check_maps(names: Mapping[str, Any], printed: str) -> None:
     assert 0.45 < float(names["best"].friction) < 0.53
     assert float(names["shares"].probability.sum()) == pytest.approx(1.0)
     growth = names["growth"]
-    # With the damping at the middle of its range, the mode grows beyond 0.8773.
-    beyond = growth.friction.values > 0.8773
-    assert np.mean(beyond == (growth.unstable_modes.values > 0.0)) > 0.95
+    # The critical friction rises from 0.8779 to 0.8891 over the range of the damping.
+    critical = np.interp(growth["slider.damping.ratio"].values, [0.003, 0.007], [0.8779, 0.8891])
+    assert np.mean((growth.friction.values > critical) == (growth.unstable_modes.values > 0.0)) > 0.98
     assert int(names["lining"].failed) == 0
 
 

@@ -199,3 +199,30 @@ def test_wrong_arguments_are_refused_in_a_line(given, message):
     with pytest.raises(ValueError, match=message) as refused:
         st.mode_probability("weak-pressure", **words)
     assert "\n" not in str(refused.value)
+
+
+def test_a_figure_has_a_bar_for_each_band():
+    given = {"first": (0.6, 0.9), "second": (0.6, 1.0)}
+    found = st.mode_probability(two_masses, given, samples=20, workers=1)
+    left, right = st.plot.mode_probability(found).axes
+    assert [bar.get_width() for bar in left.patches] == found.probability.values.tolist()
+    assert len(left.get_yticklabels()) == len(right.lines) == 2
+    drawn = [np.sort(line.get_xdata()) for line in right.lines]
+    for band, rates in enumerate(drawn):
+        known = found.band_growth_rate.values[:, band]
+        np.testing.assert_array_equal(rates, np.sort(known[np.isfinite(known)]))
+    with pytest.raises(ValueError, match="found must be the result of mode_probability"):
+        st.plot.mode_probability(found.drop_vars("frequency"))
+
+
+def test_a_random_field_is_one_of_the_parameters():
+    """A field whose seed is a whole number: equal seeds give equal growth."""
+
+    def fielded(field):
+        factor = st.random_field([[0.0]], 1.0, 0.2, seed=field)[0]
+        return hoffmann().system(MERGE * factor)
+
+    given = {"field": scipy.stats.randint(0, 1000)}
+    found = st.mode_probability(fielded, given, samples=30, workers=1)
+    known = [st.random_field([[0.0]], 1.0, 0.2, seed=int(seed))[0] > 1.0 for seed in found.field.values]
+    np.testing.assert_array_equal(found.unstable_modes.values > 0.0, known)
