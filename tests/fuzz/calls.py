@@ -7,6 +7,7 @@ import os
 import random
 from collections.abc import Callable, Iterator
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,9 @@ RESULTS = {
     "Case", "CalibrationProgress", "Diverged", "DoubtfulValue", "Film", "Interrupted", "Modes", "NoCycle", "Progress",
     "Scenario", "ScenarioError", "SoundFile", "SweepProgress",
 }  # fmt: skip
+# Functions of extras that are not installed.
+if find_spec("openturns") is None:
+    RESULTS.add("mode_surrogate")
 # Films and models of hearing take seconds for valid arguments.
 SLOW = {
     "animate",

@@ -105,8 +105,8 @@ def mode_probability(
         ``attrs["failure"]`` is the most frequent message. Over ``point``: the parameters, ``verdict`` (stable,
         unstable, held, lifted off, jammed), ``growth_rate`` [1/s] of the mode that grows fastest or decays least, NaN
         where nothing slides, ``unstable_modes``, ``message``; with ``band`` the ``band_growth_rate`` [1/s], NaN where
-        no mode in the band grows. ``attrs["notes"]`` has the points with several equilibria, of which one is used, and
-        those with so many modes that only the lowest are known.
+        no mode in the band grows. ``attrs["notes"]`` counts the points with several equilibria, of which one is used,
+        those without one that satisfies every inequality, and those of which only the lowest modes are known.
 
     Raises
     ------
@@ -179,6 +179,7 @@ class _Task:
                 "growth_rate": float(counted.real.max()) if counted.size else None,
                 "modes": [[float(one.imag / (2.0 * np.pi)), float(one.real)] for one in growing],
                 "several": known.equilibrium.found == "several",
+                "violated": known.equilibrium.found == "none found",
                 "complete": known.complete,
                 "limit": limit if math.isfinite(limit) else None,
             }
@@ -264,10 +265,13 @@ def _ends(edges: Array) -> Array:
 def _notes(good: Sequence[Outcome]) -> list[str]:
     """Return what is known only in part, in words."""
     several = sum(one["values"]["several"] for one in good)
+    violated = sum(one["values"]["violated"] for one in good)
     partial = sum(not one["values"]["complete"] for one in good)
     found = []
     if several:
         found.append(f"{several} of {len(good)} points have several equilibria, of which one is used")
+    if violated:
+        found.append(f"at {violated} of {len(good)} points no equilibrium satisfies every inequality")
     if partial:
         found.append(f"at {partial} of {len(good)} points only the lowest modes are known")
     return found
