@@ -120,6 +120,7 @@ FIGURES = (
     "mobility",
     "mode_shapes",
     "root_loci",
+    "mode_probability",
     "mode_sensitivity",
     "regime_map",
     "squeal_map",

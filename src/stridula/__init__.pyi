@@ -148,6 +148,7 @@ from .signals import write_signal as write_signal
 from .studies import CalibrationProgress as CalibrationProgress
 from .studies import Grid as Grid
 from .studies import LatinHypercube as LatinHypercube
+from .studies import RandomPoints as RandomPoints
 from .studies import Range as Range
 from .studies import StepCheck as StepCheck
 from .studies import SweepProgress as SweepProgress
@@ -159,9 +160,12 @@ from .studies import check_step as check_step
 from .studies import critical_value as critical_value
 from .studies import ensemble as ensemble
 from .studies import follow_cycle as follow_cycle
+from .studies import mode_probability as mode_probability
 from .studies import mode_sensitivity as mode_sensitivity
 from .studies import modify as modify
+from .studies import mode_surrogate as mode_surrogate
 from .studies import orbit_diagram as orbit_diagram
+from .studies import regime_probability as regime_probability
 from .studies import root_loci as root_loci
 from .studies import sensitivity as sensitivity
 from .studies import squeal_survey as squeal_survey

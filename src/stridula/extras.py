@@ -25,6 +25,7 @@ NEEDED = {
     "asammdf": ("MDF files need", "signals"),
     "mosqito": ("loudness, sharpness and roughness need", "psycho"),
     "pyvista": ("views need", "view"),
+    "openturns": ("surrogates of modes need", "surrogate"),
     "distributed": ("other machines need", "distributed"),
 }
 

@@ -92,6 +92,11 @@ def check_maps(names: Mapping[str, Any], printed: str) -> None:
     assert names["best"].met.values.tolist() == [True, True]
     assert 0.45 < float(names["best"].friction) < 0.53
     assert float(names["shares"].probability.sum()) == pytest.approx(1.0)
+    growth = names["growth"]
+    # The critical friction rises from 0.8779 to 0.8891 over the range of the damping.
+    critical = np.interp(growth["slider.damping.ratio"].values, [0.003, 0.007], [0.8779, 0.8891])
+    assert np.mean((growth.friction.values > critical) == (growth.unstable_modes.values > 0.0)) > 0.98
+    assert int(names["lining"].failed) == 0
 
 
 def check_measures(names: Mapping[str, Any], printed: str) -> None:
@@ -152,6 +157,6 @@ WRITTEN = {
     "cycles.rst": {"branch.png", "glass.wav"},
     "dynamics.rst": {"basin.png", "orbits.png"},
     "hearing.rst": {"ears.wav", "spectrogram.png", "spectrum.png", "squeal.gif"},
-    "maps.rst": {"effects.png", "map.png", "root-loci.png"},
+    "maps.rst": {"effects.png", "map.png", "probability.png", "root-loci.png"},
     "surveys.rst": {"survey.nc", "survey.png"},
 }

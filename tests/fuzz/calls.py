@@ -7,6 +7,7 @@ import os
 import random
 from collections.abc import Callable, Iterator
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,9 @@ RESULTS = {
     "Case", "CalibrationProgress", "Diverged", "DoubtfulValue", "Film", "Interrupted", "Modes", "NoCycle", "Progress",
     "Scenario", "ScenarioError", "SoundFile", "SweepProgress",
 }  # fmt: skip
+# Functions of extras that are not installed.
+if find_spec("openturns") is None:
+    RESULTS.add("mode_surrogate")
 # Films and models of hearing take seconds for valid arguments.
 SLOW = {
     "animate",
@@ -51,6 +55,8 @@ FEW = {
     "squeal_survey": {"duration": 1e-3},
     "ensemble": {"runs": 2},
     "mode_sensitivity": {"parameters": ["coefficient"]},
+    "mode_probability": {"samples": 2},
+    "mode_surrogate": {"samples": 10, "checks": 10},
     "calibrate": {"population": 5, "generations": 1, "duration": 1e-3},
 }
 
@@ -150,6 +156,11 @@ def _effects() -> xr.Dataset:
 
 
 @cache
+def _probability() -> xr.Dataset:
+    return st.mode_probability("weak-pressure", {"friction": (0.8, 1.0)}, samples=4)
+
+
+@cache
 def _swept() -> xr.Dataset:
     points = st.Grid({"coefficient": [1.0, 1.5], "contact.at": [0.3, 0.4]})
     return st.sweep("squeal", points, ["regime"], duration=0.005)
@@ -196,6 +207,7 @@ THINGS: dict[str, Callable[[], Any]] = {
     "loci": _loci,
     "effects": _effects,
     "swept": _swept,
+    "probability": _probability,
     "stability": lambda: st.sliding_stability(_system()),
     "system": _system,
     "systems": lambda: [_system(), _system()],
@@ -223,6 +235,7 @@ THINGS: dict[str, Callable[[], Any]] = {
     "figure": lambda: plot.friction(st.Coulomb(0.5)),
     "thresholds": analysis.Thresholds,
     "grid": lambda: st.Grid({"coefficient": [1.0, 1.5]}),
+    "random points": lambda: st.RandomPoints({"coefficient": (1.0, 1.5)}, 2),
     "hypercube": lambda: st.LatinHypercube({"coefficient": (1.0, 1.5)}, 2),
     "range": lambda: st.Range(0.1, 1.0),
     "measure": lambda: {"mean": lambda run: 1.0},
@@ -276,7 +289,9 @@ FITTING: dict[str, tuple[tuple[str, Any], ...]] = {
     **dict.fromkeys(("measures",), _plain("regime", ["mean_force"]) + _things("measure", "failing measure")),
     **dict.fromkeys(("duration", "start"), _plain(1e-3, 0.0) + _things("record")),
     **dict.fromkeys(("samples", "runs", "workers", "resamples", "population", "generations"), _plain(1, 2)),
-    **dict.fromkeys(("overrides", "ranges", "uncertain"), _plain({"coefficient": (0.5, 1.0)}, {"coefficient": 1.0})),
+    **dict.fromkeys(
+        ("overrides", "ranges", "uncertain", "distributions"), _plain({"coefficient": (0.5, 1.0)}, {"coefficient": 1.0})
+    ),
     "system": _SYSTEMS,
     "systems": _things("systems"),
     "material": _things("material"),
@@ -287,7 +302,7 @@ FITTING: dict[str, tuple[tuple[str, Any], ...]] = {
     "line": _things("line"),
     "air": _things("air"),
     "damping": _NUMBERS + _things("rayleigh"),
-    "points": _things("points", "grid", "hypercube"),
+    "points": _things("points", "grid", "hypercube", "random points"),
     "mass": _plain(1.0) + _things("matrix"),
     "contact": _things("contact"),
     "drives": _things("drives"),
@@ -302,11 +317,14 @@ FITTING: dict[str, tuple[tuple[str, Any], ...]] = {
     "channel": _plain("a"),
     "channels": _plain(["a"]),
     "decimal": _plain(".", ","),
+    "correlations": _plain({("coefficient", "at"): 0.5}),
+    "band": _plain((1e3, 5e3)),
+    "kind": _plain("chaos", "kriging"),
     "intervals": _things("intervals"),
     "status": _STATUS,
     "limits": _things("thresholds"),
     "figure": _things("figure"),
-    "found": _things("swept", "effects"),
+    "found": _things("swept", "effects", "probability"),
     "parameters": _plain(["coefficient"], ["friction"], ["slider.material.young"]),
     "masses": _plain({"tip": ("slider", "tip")}),
     "loci": _things("loci"),

@@ -58,6 +58,15 @@ class IntoSpace:
         self.runs += 1
         return st.mode_sensitivity(self.system(flat)[0], *args, **words)
 
+    def mode_probability(self, flat: Any, *args: Any, **words: Any) -> xr.Dataset:
+        """Return the probabilities of the systems that a function makes in the plane, in space."""
+        self.runs += 1
+
+        def made(**values: float) -> System:
+            return self.system(flat(**values))[0]
+
+        return st.mode_probability(made, *args, **words)
+
     def turned(self, components: Any) -> tuple[float, ...]:
         """Return the components in space of a vector of the plane."""
         given = np.asarray(components, dtype=float)

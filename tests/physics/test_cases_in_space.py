@@ -42,6 +42,8 @@ QUICK = [
 SLOW = [
     "den-hartog",
     "sinou",
+    "random-friction",
+    "correlated-friction",
     "sliding-stability",
     "bouncing",
     "painleve",
@@ -99,7 +101,7 @@ LOOSE = {
 def ask_in_space(patched: ExitStack, space: IntoSpace) -> None:
     """Make the modules of the cases run their systems turned into space."""
     for name in [name for name in sys.modules if name.startswith("stridula.verification.")]:
-        for asked in ("simulate", "sliding_stability", "mode_sensitivity"):
+        for asked in ("simulate", "sliding_stability", "mode_sensitivity", "mode_probability"):
             if hasattr(sys.modules[name], asked):
                 patched.enter_context(mock.patch.object(sys.modules[name], asked, getattr(space, asked)))
 

@@ -7,6 +7,7 @@ import tomllib
 
 import numpy as np
 import pytest
+import scipy.stats
 
 import stridula as st
 from stridula.cli import searching
@@ -122,11 +123,37 @@ def test_stability_by_parameters_prints_the_largest_effect_first(stridula, tmp_p
     assert (tmp_path / "effects.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_stability_at_random_prints_the_probability(stridula, tmp_path):
+    given = ("--random", "friction=normal:0.9:0.1", "--random", "angle=-50deg:-40deg", "--samples", "40", "--seed", "2")
+    more = ("--correlation", "friction,angle=0.5", "--out", "found.nc", "--plot", "found.png", "--workers", "1")
+    code, out, _ = stridula("stability", "weak-pressure", *given, *more)
+    assert code == 0
+    found = st.load("found.nc")
+    pairs = {("friction", "angle"): 0.5}
+    uncertain = {"friction": scipy.stats.norm(0.9, 0.1), "angle": ("-50 deg", "-40 deg")}
+    same = st.mode_probability("weak-pressure", uncertain, samples=40, seed=2, correlations=pairs)
+    np.testing.assert_array_equal(found.probability, same.probability)
+    assert f"Any mode grows: {float(same.any_probability):.3f}" in out
+    assert out.endswith("40 points: 40 done, 0 failed\n")
+    assert (tmp_path / "found.png").read_bytes().startswith(b"\x89PNG")
+
+
+RANDOM = ("--random", "friction=0.8:1")
 VARY = ("--vary", "friction=0.5:1:3")
 BAD_STABILITY = [
-    (("--plot", "a.png"), "--plot must be used with --vary or --by, got 'a.png' alone"),
-    (("--out", "a.nc"), "--out must be used with --vary or --by, got 'a.nc' alone"),
-    (("--highest", "9"), "--highest must be used with --vary, got 9.0 alone"),
+    (("--samples", "9"), "--samples must be used with --random, got 9 alone"),
+    (("--workers", "1"), "--workers must be used with --random, got 1 alone"),
+    ((*RANDOM, "--vary", "friction=0:1:3"), "--vary must be left out with --random"),
+    ((*RANDOM, "--status", "sliding"), "--status must be left out with --random"),
+    ((*RANDOM, *RANDOM), "--random must name each key once, got 'friction' twice"),
+    (("--random", "friction"), "--random must be KEY=LOW:HIGH"),
+    (("--random", "friction=normal:1:0"), "--random must be KEY=LOW:HIGH, KEY=LOW:HIGH:log or KEY=normal:MEAN:DEV"),
+    ((*RANDOM, "--correlation", "friction=1"), "--correlation must be KEY,KEY=NUMBER, got 'friction=1'"),
+    ((*RANDOM, "--samples", "0"), "samples must be at least 1, got 0"),
+    ((*RANDOM, "--out", "a.csv"), "--out must be a NetCDF file"),
+    (("--plot", "a.png"), "--plot must be used with --vary, --by or --random, got 'a.png' alone"),
+    (("--out", "a.nc"), "--out must be used with --vary, --by or --random, got 'a.nc' alone"),
+    (("--highest", "9"), "--highest must be used with --vary or --random, got 9.0 alone"),
     (("--set", "frition=1"), "did you mean 'friction'?"),
     (("--status", "slding"), "did you mean 'sliding'?"),
     (("--status", "sliding,sliding"), "status must have one value for each contact, 1 in all"),

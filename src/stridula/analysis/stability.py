@@ -11,8 +11,9 @@ from ..arrays import Array
 from ..checks import count, instance, non_negative
 from ..linear.equilibrium import JAMMED, LIFTED_OFF, Equilibrium, find_equilibrium, open_words
 from ..linear.given import Status, Velocity, given_status, given_velocity
-from ..linear.modes import exponents_alone, modes_of, round_off
-from ..linear.structure import SLIDING, Structure
+from ..linear.growth import growth_of
+from ..linear.modes import modes_of, round_off
+from ..linear.structure import Structure
 from ..linear.vibration import Exponents, vibration
 from ..lowering.model_ends import notes_of
 from ..records.variables import EQUILIBRIUM, TANGENTS, described
@@ -128,26 +129,15 @@ def stability_of(system: System, velocity: Velocity | None = None) -> dict[str, 
         [Hz] of the mode that grows fastest, NaN if none grows; ``unstable_modes``, NaN if jammed; ``equilibrium``
         and ``equilibria`` as in `sliding_stability`.
     """
-    structure = Structure(system)
-    equilibrium = find_equilibrium(structure, given_velocity(velocity, structure))
-    nothing = float("nan")
-    if equilibrium.kind == JAMMED or SLIDING not in equilibrium.status:
-        return {
-            "growth_rate": nothing,
-            "flutter_frequency": nothing,
-            "unstable_modes": nothing if equilibrium.kind == JAMMED else 0.0,
-            "equilibrium": equilibrium.kind,
-            "equilibria": equilibrium.found,
-        }
-    found = exponents_alone(structure, vibration(structure, equilibrium))
-    growing = found[found.real > round_off(structure)]
+    known, nothing = growth_of(system, velocity), float("nan")
+    kind, growing = known.equilibrium.kind, known.growing
     fastest = growing[np.argmax(growing.real)] if growing.size else complex(np.nan, np.nan)
     return {
-        "growth_rate": float(found.real.max()),
+        "growth_rate": nothing if known.exponents is None else float(known.exponents.real.max()),
         "flutter_frequency": float(fastest.imag / (2.0 * np.pi)),
-        "unstable_modes": float(growing.size),
-        "equilibrium": equilibrium.kind,
-        "equilibria": equilibrium.found,
+        "unstable_modes": nothing if kind == JAMMED else float(growing.size),
+        "equilibrium": kind,
+        "equilibria": known.equilibrium.found,
     }
 
 
@@ -229,6 +219,12 @@ def _bodies_of_coordinates(structure: Structure) -> Array:
     return body.astype(str)
 
 
+def highest_cutoff(system: System) -> float:
+    """Return the highest cutoff of the bodies of a system [Hz], infinite if none has any."""
+    cutoffs = [getattr(body, "cutoff", None) for body in system.bodies]
+    return max((float(one) for one in cutoffs if one is not None), default=np.inf)
+
+
 def _beyond_cutoff(system: System, frequency: Array, share: Array) -> tuple[float, Array]:
     """Return the highest cutoff of the bodies [Hz], and which modes of these bodies lie above it.
 
@@ -241,9 +237,8 @@ def _beyond_cutoff(system: System, frequency: Array, share: Array) -> tuple[floa
     share : ndarray, shape (modes, bodies)
         Share of each body in the kinetic energy.
     """
-    cutoffs = [getattr(body, "cutoff", None) for body in system.bodies]
-    cut = np.array([one is not None for one in cutoffs])
-    limit = max((float(one) for one in cutoffs if one is not None), default=np.inf)
+    cut = np.array([getattr(body, "cutoff", None) is not None for body in system.bodies])
+    limit = highest_cutoff(system)
     return limit, (frequency > limit) & (share[:, cut].sum(axis=1) >= OF_THE_BODIES)
 
 

@@ -350,7 +350,7 @@ def stability(
         ),
     ] = None,
     highest: Annotated[
-        float | None, typer.Option(metavar="HZ", help="With --vary: leave out modes above this frequency.")
+        float | None, typer.Option(metavar="HZ", help="With --vary or --random: leave out modes above this frequency.")
     ] = None,
     by: Annotated[
         list[str] | None,
@@ -358,11 +358,53 @@ def stability(
             metavar="KEY", help="Effect of a parameter on the growing mode, or of all of them; may be repeated."
         ),
     ] = None,
-    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw modes over a parameter, or effects.")] = None,
+    random: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=LOW:HIGH",
+            help="Probability of growth for a random parameter, uniform or KEY=normal:MEAN:DEVIATION; may be repeated.",
+        ),
+    ] = None,
+    correlation: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY,KEY=NUMBER", help="With --random: correlation of two parameters; may be repeated."),
+    ] = None,
+    samples: Annotated[
+        int | None, typer.Option(metavar="N", help="With --random: number of points; default: 1000.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(metavar="S", help="With --random: seed of the points.")] = None,
+    workers: Workers = None,
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw modes over a parameter, effects, or probabilities.")
+    ] = None,
     out: Annotated[str | None, typer.Option(metavar="FILE", help="Write these, as NetCDF.")] = None,
 ) -> None:
-    """Print equilibrium and modes of sliding by linear theory, where stability changes, or what parameters change."""
+    """Print equilibrium and modes of sliding by linear theory, where stability changes, effects or probabilities."""
     overrides = _pairs(set_ or [])
+    sampled = {"--correlation": correlation, "--samples": samples, "--seed": seed, "--workers": workers}
+    if random:
+        unused = {"--vary": vary, "--by": by, "--status": status}
+        if option := next((option for option, value in unused.items() if value), None):
+            raise ArgumentError(option, "be left out with --random", unused[option])
+        from .probability import print_probability
+        from .stability import velocities
+
+        print_probability(
+            name,
+            random,
+            correlation or [],
+            overrides,
+            out,
+            plot,
+            velocity=velocities(velocity),
+            highest=highest,
+            samples=1000 if samples is None else samples,
+            seed=seed or 0,
+            workers=workers,
+        )
+        return
+    if alone := next((option for option, value in sampled.items() if value is not None), None):
+        raise ArgumentError(alone, "be used with --random", sampled[alone], got=f"{sampled[alone]!r} alone")
     if by:
         for option, value in (("--vary", vary), ("--highest", highest)):
             if value is not None:
@@ -375,7 +417,7 @@ def stability(
     if vary is None:
         for option, value in (("--plot", plot), ("--out", out), ("--highest", highest)):
             if value is not None:
-                others = "--vary" if option == "--highest" else "--vary or --by"
+                others = "--vary or --random" if option == "--highest" else "--vary, --by or --random"
                 raise ArgumentError(option, f"be used with {others}", value, got=f"{value!r} alone")
         from .stability import print_stability
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 from ..arrays import Array
 from .massless import massless_exponents
@@ -40,9 +42,14 @@ def modes_of(structure: Structure, motion: Vibration, modes: int | None = None, 
 
 def exponents_alone(structure: Structure, motion: Vibration) -> Array:
     """Return the exponents [1/s] of the same modes without shapes, in any order."""
-    if _moving(structure) > LARGEST_DENSE:
-        return _nearest(structure, motion, COUNT, 0.0).values
-    return _all(motion, shapes=False).values
+    if has_all_exponents(structure):
+        return _all(motion, shapes=False).values
+    return _nearest(structure, motion, COUNT, 0.0).values
+
+
+def has_all_exponents(structure: Structure) -> bool:
+    """Return whether `exponents_alone` finds all exponents, and not only the lowest ones."""
+    return _moving(structure) <= LARGEST_DENSE
 
 
 def round_off(structure: Structure) -> float:
@@ -74,8 +81,14 @@ def _chosen(structure: Structure, motion: Vibration, modes: int | None, near: fl
 
 def _all(motion: Vibration, shapes: bool = True) -> Exponents:
     # Threads hardly help for matrices of this size, and wait for each other if the processors are busy.
-    with threadpool_limits(1):
+    with _libraries().limit(limits=1):
         return (all_exponents if motion.mass.all() else massless_exponents)(motion, shapes)
+
+
+@cache
+def _libraries() -> ThreadpoolController:
+    """Return the libraries of linear algebra, whose search takes longer than the modes of small systems."""
+    return ThreadpoolController()
 
 
 def _nearest(structure: Structure, motion: Vibration, wanted: int, near: float) -> Exponents:

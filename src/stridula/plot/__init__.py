@@ -21,6 +21,7 @@ _HOME = {
     "friction": "laws",
     "meshes": "mesh_drawings",
     "mobility": "mobilities",
+    "mode_probability": "probabilities",
     "mode_sensitivity": "effects",
     "mode_shapes": "shapes_of_modes",
     "multipliers": "branches",

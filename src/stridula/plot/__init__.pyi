@@ -18,6 +18,7 @@ from .maps import regime_map as regime_map
 from .mesh_drawings import meshes as meshes
 from .mobilities import mobility as mobility
 from .mode_films import animate_mode as animate_mode
+from .probabilities import mode_probability as mode_probability
 from .reels import Film as Film
 from .shapes_of_modes import mode_shapes as mode_shapes
 from .space_films import bodies as bodies

@@ -1,4 +1,4 @@
-"""Studies of many runs: ensembles, sweeps and maps, squeal surveys, root loci, calibration, sensitivity."""
+"""Studies of many runs: ensembles, sweeps, surveys, root loci, calibration, sensitivity, probabilities."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ _HOME = {
     "CalibrationProgress": "calibration",
     "Grid": "points",
     "LatinHypercube": "points",
+    "RandomPoints": "random_points",
     "Range": "points",
     "SweepProgress": "computed",
     "Target": "calibration",
@@ -22,9 +23,12 @@ _HOME = {
     "ensemble": "ensembles",
     "follow_cycle": "branches",
     "mean_and_interval": "ensembles",
+    "mode_probability": "growth_probability",
     "mode_sensitivity": "mode_derivatives",
     "modify": "modified",
+    "mode_surrogate": "surrogates",
     "orbit_diagram": "orbit_diagrams",
+    "regime_probability": "probabilities",
     "root_loci": "loci",
     "sensitivity": "sobol",
     "share_of": "ensembles",

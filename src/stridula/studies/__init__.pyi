@@ -9,6 +9,7 @@ from .computed import SweepProgress as SweepProgress
 from .ensembles import ensemble as ensemble
 from .ensembles import mean_and_interval as mean_and_interval
 from .ensembles import share_of as share_of
+from .growth_probability import mode_probability as mode_probability
 from .loci import critical_value as critical_value
 from .loci import root_loci as root_loci
 from .mode_derivatives import mode_sensitivity as mode_sensitivity
@@ -17,9 +18,12 @@ from .orbit_diagrams import orbit_diagram as orbit_diagram
 from .points import Grid as Grid
 from .points import LatinHypercube as LatinHypercube
 from .points import Range as Range
+from .probabilities import regime_probability as regime_probability
+from .random_points import RandomPoints as RandomPoints
 from .sobol import sensitivity as sensitivity
 from .step_checks import StepCheck as StepCheck
 from .step_checks import check_step as check_step
+from .surrogates import mode_surrogate as mode_surrogate
 from .surveys import squeal_survey as squeal_survey
 from .sweeps import sweep as sweep
 from .tables import survey_table as survey_table

@@ -1,8 +1,7 @@
-"""Sensitivity of regime, frequency or level to uncertain parameters, and the probability of squeal."""
+"""Sensitivity of regime, frequency or level to uncertain parameters, with the probability of each regime."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,13 +14,13 @@ from ..analysis.regimes import REGIMES
 from ..arrays import Array
 from ..checks import ArgumentError, count, within
 from ..records.variables import described
-from .points import range_of
+from .distributions import LOWEST_SHARE, distributions_of, values_of
+from .probabilities import BOUNDS, shares_of
 from .sources import SystemOf
 from .sweeps import sweep
 from .swept import failures, usual_failure
 
 MOST_SAMPLES, MOST_RESAMPLES = 2**16, 100_000
-BOUNDS = ("low", "high")
 # Attributes of a sweep that record its origin.
 ORIGIN = ("title", "scenario", "function", "stridula_version")
 # With fewer samples there is no interval.
@@ -83,20 +82,19 @@ def sensitivity(
     ValueError
         If an argument is out of its range, or as in `sweep`.
     """
-    named = _distributions(uncertain)
+    named = distributions_of("uncertain", uncertain)
     if count("samples", samples, high=MOST_SAMPLES) & (samples - 1):
         raise ArgumentError("samples", "be a power of 2", samples)
     count("seed", seed, low=0)
     count("resamples", resamples, high=MOST_RESAMPLES)
     within("confidence", confidence, 0.0, 1.0, ends=False)
-    shares = _shares(len(named), samples, seed)
-    points = [
-        {key: _value(one, float(share)) for (key, one), share in zip(named.items(), row, strict=True)} for row in shares
-    ]
+    shares = shares_for_indices(len(named), samples, seed)
+    columns = [values_of(one, column) for one, column in zip(named.values(), shares.T, strict=True)]
+    points = [dict(zip(named, row, strict=True)) for row in zip(*columns, strict=True)]
     found = sweep(scenario, points, measures, progress=progress, **options)
     outputs = _outputs(found)
     keys = list(named)
-    data: dict[str, Any] = _indices(outputs, len(keys), samples, seed, confidence, resamples)
+    data: dict[str, Any] = sobol_indices(outputs, len(keys), samples, seed, confidence, resamples)
     coordinates: dict[str, Any] = {"output": list(outputs), "parameter": keys, "bound": list(BOUNDS)}
     messages = failures(found)
     data["runs"], data["failed"] = ((), len(points)), ((), len(messages))
@@ -110,38 +108,15 @@ def sensitivity(
     return xr.Dataset(data, coordinates, origin | {"confidence": confidence, "samples": samples, "seed": seed})
 
 
-def _distributions(uncertain: Any) -> dict[str, Any]:
-    if not isinstance(uncertain, Mapping) or not uncertain:
-        raise ArgumentError("uncertain", "be distributions by key", uncertain)
-    found: dict[str, Any] = {}
-    for key, given in uncertain.items():
-        is_distribution = callable(getattr(given, "ppf", None))
-        if is_distribution and not _is_one_number(given):
-            raise ArgumentError(f"uncertain[{key!r}]", "be a frozen distribution of one number", given)
-        found[str(key)] = given if is_distribution else range_of(f"uncertain[{key!r}]", given)
-    return found
-
-
-def _is_one_number(distribution: Any) -> bool:
-    try:
-        return math.isfinite(float(distribution.ppf(0.5)))
-    except (TypeError, ValueError):
-        return False
-
-
-def _value(distribution: Any, share: float) -> Any:
-    return distribution.value(share) if hasattr(distribution, "value") else float(distribution.ppf(share))
-
-
-def _shares(parameters: int, samples: int, seed: int) -> Array:
+def shares_for_indices(parameters: int, samples: int, seed: int) -> Array:
     """Return the points as quantile levels: set A, set B, then A with each column taken from B in turn."""
     drawn = scipy.stats.qmc.Sobol(2 * parameters, rng=np.random.default_rng(seed)).random(samples)
     first, second = drawn[:, :parameters], drawn[:, parameters:]
     mixed = [first.copy() for _ in range(parameters)]
     for number, one in enumerate(mixed):
         one[:, number] = second[:, number]
-    # For many distributions the quantile at exactly 0 is infinite.
-    return np.clip(np.concatenate([first, second, *mixed]), 1e-12, 1.0 - 1e-12)
+    # The quantile at exactly 0 may be infinite.
+    return np.clip(np.concatenate([first, second, *mixed]), LOWEST_SHARE, 1.0 - LOWEST_SHARE)
 
 
 def _outputs(found: xr.Dataset) -> dict[str, Array]:
@@ -157,7 +132,7 @@ def _outputs(found: xr.Dataset) -> dict[str, Array]:
     return outputs
 
 
-def _indices(
+def sobol_indices(
     outputs: Mapping[str, Array], parameters: int, samples: int, seed: int, confidence: float, resamples: int
 ) -> dict[str, Any]:
     """Return the indices of each output with their intervals, and the number of samples used."""
@@ -201,20 +176,8 @@ def _sobol(sets: Array) -> tuple[Array, Array]:
 
 
 def _probabilities(regimes: Array, confidence: float) -> dict[str, Any]:
-    good = regimes[regimes != ""]
-    shares, bounds = [], []
-    for word in REGIMES:
-        seen = int(np.count_nonzero(good == word))
-        shares.append(seen / good.size if good.size else np.nan)
-        bounds.append(_wilson(seen, good.size, confidence))
+    shares, bounds = shares_of(REGIMES, regimes[regimes != ""], confidence)
     return {
         "probability": ("regime", shares, described("1", "probability of the regime")),
         "probability_interval": (("regime", "bound"), bounds),
     }
-
-
-def _wilson(seen: int, size: int, confidence: float) -> list[float]:
-    if not size:
-        return [np.nan, np.nan]
-    interval = scipy.stats.binomtest(seen, size).proportion_ci(confidence, "wilson")
-    return [float(interval.low), float(interval.high)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from weakref import WeakSet
 
@@ -27,7 +27,7 @@ from ..modes import Modes, hashed_once
 from ..points import BodyPoint, CircularPath
 from ..sections import Material
 from ..turning import Turning
-from .profile_mesh import ProfileMesh
+from .profile_mesh import MOST_KNOWN, ProfileMesh
 from .profiles import PROFILES, Profile
 from .ring_surfaces import cut_outline
 
@@ -456,13 +456,27 @@ class _Solution:
 
     def cylindrical(self, r: float, theta: Any, z: float) -> Array:
         """Return the displacements along r, theta and z for unit modes, shape (3, modes) or (3, angles, modes)."""
-        points, values = self.elements.shape_functions(r, z)
-        u, v, w = np.einsum("cpk,p->ck", self.shapes[:, points], values)[:, self.columns]
+        u, v, w = self._along_profile(r, z)
         order, _, side = self.numbers.T
         turned = np.multiply.outer(theta, order)
         cosine, sine = np.cos(turned), np.sin(turned)
         along = np.where(side == 0, cosine, sine)
         return np.array([u * along, v * np.where(side == 0, sine, -cosine), w * along])
+
+    def _along_profile(self, r: float, z: float) -> Array:
+        """Return the amplitudes along r, theta and z of unit modes at a place of the profile, shape (3, modes)."""
+        found = self._amplitudes.get((r, z))
+        if found is None:
+            points, values = self.elements.shape_functions(r, z)
+            found = np.einsum("cpk,p->ck", self.shapes[:, points], values)[:, self.columns]
+            if len(self._amplitudes) < MOST_KNOWN:
+                self._amplitudes[r, z] = found
+        return found
+
+    @cached_property
+    def _amplitudes(self) -> dict[tuple[float, float], Array]:
+        """Amplitudes at places that were asked for: systems in series have the same points."""
+        return {}
 
 
 @lru_cache(maxsize=16)

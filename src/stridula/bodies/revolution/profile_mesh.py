@@ -25,6 +25,8 @@ SIDES = ("inner", "outer", "bottom", "top")
 GROWTH, SAMPLES = 0.5, 257
 # Number of sides that are checked against all others at once.
 SIDES_AT_ONCE = 256
+# Largest number of points whose cells, and whose displacements in modes, are kept.
+MOST_KNOWN = 4096
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,8 +130,17 @@ class ProfileMesh:
 
     def cell_at(self, r: float, z: float) -> int | None:
         """Return the number of the cell that contains a point [m], None outside."""
-        cell = int(self.cells_at(np.array([[r, z]]))[0])
+        cell = self._cells_known.get((r, z))
+        if cell is None:
+            cell = int(self.cells_at(np.array([[r, z]]))[0])
+            if len(self._cells_known) < MOST_KNOWN:
+                self._cells_known[r, z] = cell
         return None if cell < 0 else cell
+
+    @cached_property
+    def _cells_known(self) -> dict[tuple[float, float], int]:
+        """Cells of points that were searched, -1 outside: systems in series have the same points."""
+        return {}
 
     def cells_at(self, places: Array) -> Array:
         """Return the numbers of the cells that contain points (r, z) [m], -1 outside, shape (points,)."""
