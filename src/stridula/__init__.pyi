@@ -162,8 +162,8 @@ from .studies import ensemble as ensemble
 from .studies import follow_cycle as follow_cycle
 from .studies import mode_probability as mode_probability
 from .studies import mode_sensitivity as mode_sensitivity
-from .studies import modify as modify
 from .studies import mode_surrogate as mode_surrogate
+from .studies import modify as modify
 from .studies import orbit_diagram as orbit_diagram
 from .studies import regime_probability as regime_probability
 from .studies import root_loci as root_loci
