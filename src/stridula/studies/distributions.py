@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError
-from .points import Range, range_of
+from .points import range_of
 
 # Quantile levels beyond which no value is taken: for many distributions that at exactly 0 is infinite.
 LOWEST_SHARE = 1e-12
@@ -44,9 +44,14 @@ def distributions_of(name: str, given: Any) -> dict[str, Any]:
     return found
 
 
+def is_range(distribution: Any) -> bool:
+    """Return whether a distribution is a `Range`, uniform between its ends; the others have quantiles."""
+    return not hasattr(distribution, "ppf")
+
+
 def values_of(distribution: Any, shares: Array) -> list[Any]:
     """Return the values of a distribution at quantile levels, whole numbers if it has no others."""
-    if isinstance(distribution, Range):
+    if is_range(distribution):
         return [distribution.value(share) for share in shares.tolist()]
     numbers = np.asarray(distribution.ppf(np.clip(shares, LOWEST_SHARE, 1.0 - LOWEST_SHARE)), dtype=float)
     return [int(number) for number in numbers] if hasattr(distribution, "pmf") else numbers.tolist()
@@ -54,7 +59,7 @@ def values_of(distribution: Any, shares: Array) -> list[Any]:
 
 def described_distribution(distribution: Any) -> Any:
     """Return a distribution as plain numbers and texts: the ends of a range, or some quantiles."""
-    if isinstance(distribution, Range):
+    if is_range(distribution):
         return vars(distribution)
     return [float(distribution.ppf(share)) for share in DESCRIBED_AT]
 

@@ -21,8 +21,9 @@ from ..linear.growth import growth_of
 from ..records.variables import described
 from ..version import __version__
 from .computed import Plan, Watcher, check_options, computed
+from .distributions import is_range
 from .growth_probability import checked_edges
-from .points import Range, plain_python
+from .points import plain_python
 from .probabilities import BOUNDS, wilson_interval
 from .random_points import RandomPoints
 from .sobol import shares_for_indices, sobol_indices
@@ -284,7 +285,7 @@ class _Fit:
     @property
     def _uniform(self) -> list[bool]:
         """Whether each coordinate is uniform from -1 to 1, as ranges are, or normal, as scores are."""
-        return [isinstance(one, Range) and not self.points.correlations for one in self.points.distributions.values()]
+        return [is_range(one) and not self.points.correlations for one in self.points.distributions.values()]
 
     def _coordinates(self, scores: Array) -> Array:
         return np.where(self._uniform, 2.0 * scipy.special.ndtr(scores) - 1.0, scores)
