@@ -25,9 +25,26 @@ def check_connections(system: Any) -> None:
             if system.is_held(body) and (held_motions(connection) or any(abs(one.way[0]) > NONE for one in motions)):
                 words = "not act along x on a body under an imposed velocity, which prescribes its x"
                 raise ArgumentError(name, words, got=str(connection))
+            if held_motions(connection):
+                _check_yields(name, system, connection)
             if body in tracks and held_motions(connection):
                 words = "not be a rigid joint of a body along which a contact moves; a stiff spring may join it"
                 raise ArgumentError(name, words, got=f"one to {system.body_name(body)}")
+
+
+def _check_yields(name: str, system: Any, joint: Any) -> None:
+    """Raise if a rigid joint takes its flexibility from the contacts of a body, which does not yield at its place.
+
+    A mass joined to a single place rides on the flexibility that the body has.
+    """
+    joints = [{point.body for point in ends(one)} for one in system.connections if held_motions(one)]
+    points = ends(joint)
+    for point, other in zip(points, reversed(points), strict=True):
+        body: Any = point.body
+        is_mass = getattr(other.body, "is_lumped", False) and sum(other.body in one for one in joints) == 1
+        if not (is_mass and len(points) > 1) and not getattr(body, "yields_at", lambda _: True)(point.position):
+            words = f"be at points at which {system.body_name(body)} yields: name them in its {body.yields_by}"
+            raise ArgumentError(name, words, got=f"one at ({point.label})")
 
 
 def _moves_along(contact: Any) -> bool:

@@ -369,6 +369,69 @@ def test_a_joint_to_a_track_with_a_path_is_refused():
         st.System(contact, [], [st.RigidJoint(mass.centre, bar.at(0.3))])
 
 
+def pad_on_piston(joined, named=True, friction=0.45):
+    """A lined block on a plane, its back on a rigid piston at eight nodes by a function of two points."""
+    mesh = st.SolidMesh.block((0.08, 0.016, 0.04), (4, 1, 2))
+    places = {
+        f"p{k}": (x, 0.016, z) for k, (x, z) in enumerate((x, z) for x in (0.0, 0.02, 0.06, 0.08) for z in (0.0, 0.04))
+    }
+    steel = st.Material(2e11, 7800.0, 0.3)
+    pad = st.SolidBody(mesh, steel, points=places if named else {}, cutoff=12e3, contact_faces=["bottom"], name="pad")
+    offsets = {name: (x - 0.04, 0.0, z - 0.02) for name, (x, _, z) in places.items()}
+    piston = st.RigidBody(0.6, [3e-4, 5e-4, 3e-4], offsets, "piston")
+    ends = [(piston.at(name), pad.at(name if named else places[name])) for name in places]
+    held = [st.Spring(piston.centre, stiffness=2e7, direction=way) for way in ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0))]
+    face = st.SurfaceContact(pad, "bottom", st.RigidTrack(velocity=2.0), friction=st.Coulomb(friction), stiffness=1e11)
+    return st.System(face, [st.Force(piston.centre, y=-2000.0)], [*held, *(joined(*pair) for pair in ends)])
+
+
+def test_a_pad_on_a_piston_is_the_limit_of_stiff_mounts():
+    """Linear theory with joints is that with mounts of ever larger stiffness, and nothing grows without bound."""
+    joined = st.sliding_stability(pad_on_piston(st.RigidJoint))
+
+    def mounted(stiffness):
+        return st.sliding_stability(pad_on_piston(lambda one, two: st.Bushing(one, two, stiffness=[stiffness] * 3)))
+
+    def pitches(found):
+        frequency = np.sort(found["frequency"].values)
+        return frequency[(frequency > 10.0) & (frequency < 8e3)]
+
+    expected = pitches(joined)
+    assert expected.size >= 5
+    apart = [np.abs(pitches(mounted(stiffness)) / expected - 1.0).max() for stiffness in (1e9, 1e12)]
+    assert apart[1] < 1e-3 < apart[0]
+    assert float(joined["growth_rate"].max()) < 1e4
+
+
+def test_a_joint_where_a_solid_does_not_yield_is_refused():
+    """Its contacts would lose their flexibility to it; a lone mass rides on what there is."""
+    with pytest.raises(
+        ValueError, match=r"must be at points at which pad yields: name them in its points, got one at \(0"
+    ):
+        pad_on_piston(st.RigidJoint, named=False)
+    mounted = pad_on_piston(lambda one, two: st.Bushing(one, two, stiffness=[1e9] * 3), named=False)
+    pad = mounted.bodies[0]
+    heavier = st.modify(mounted, masses=[(pad.at((0.04, 0.016, 0.02)), 0.05)])
+    assert len(st.sliding_stability(heavier)["mode"]) > 6
+
+
+def test_growth_without_bound_is_noted(monkeypatch):
+    """The same joints without the check: parts without mass grow, faster than anything vibrates."""
+    monkeypatch.setattr("stridula.system.check_connections", lambda system: None)
+    brake = st.load_scenario("brake").system
+    pistons = []
+    for pad, sign in zip((body for body in brake.bodies if "pad" in body.name), (1.0, -1.0), strict=True):
+        spread = [(x, z) for x in (-0.03, -0.01, 0.01, 0.03) for z in (0.088, 0.1, 0.112)]
+        offsets = {f"p{k}": (x, 0.0, z - 0.1) for k, (x, z) in enumerate(spread)}
+        places = {f"p{k}": (x, sign * 0.026, z) for k, (x, z) in enumerate(spread)}
+        piston = st.RigidBody(0.6, [3e-4, 5e-4, 3e-4], offsets, f"on {pad.name}")
+        pistons += [st.RigidJoint(piston.at(name), pad.at(place)) for name, place in places.items()]
+        pistons += [st.Spring(piston.centre, stiffness=1e6, direction=way) for way in "xz"]
+    found = st.sliding_stability(st.modify(brake, connections=pistons))
+    assert "faster than any mode that is kept vibrates" in found.attrs["notes"]
+    assert "faster than" not in st.sliding_stability(brake).attrs["notes"]
+
+
 def test_joints_and_bushings_are_drawn_and_named():
     one, two = st.PointMass(0.5, "a"), st.PointMass(0.8, "b")
     contact = st.PointContact(two.centre, BELT)

@@ -194,6 +194,13 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
     attributes |= {"violated": "; ".join(equilibrium.violated), "round_off": round_off(structure)}
     opened = open_words(structure, equilibrium) if equilibrium.kind == LIFTED_OFF else []
     notes = [*opened, *notes_of(system, structure.arrays, AHEAD)]
+    fastest = float(np.sqrt(np.diag(structure.stiffness)[structure.mass > 0.0].max(initial=0.0)))
+    if count := int(np.sum(unstable & (found.values.real > fastest) & (fastest > 0.0))):
+        grow = "mode grows" if count == 1 else "modes grow"
+        notes.append(
+            f"{count} {grow} faster than any mode that is kept vibrates: residual shapes, "
+            "which have no mass, are unstable under this friction"
+        )
     if count := int(np.sum(unstable & beyond)):
         lie = "mode lies" if count == 1 else "modes lie"
         notes.append(

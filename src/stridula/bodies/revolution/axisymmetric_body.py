@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 DIRECTIONS = ("r", "theta", "z")
 Z = (0.0, 0.0, 1.0)
 POSITION = "three numbers, (r, theta, z)"
+# Distance of a place from one of `residual_at` that is rounding [m].
+SAME_PLACE = 1e-9
 # Largest side of a cell as a share of 1 / k of the shortest waves: in thick parts, and in parts so thin that cells of
 # their thickness would be finer than bending needs; in between it is a share of the thickness.
 # Frequencies are within 1e-3, and within 5e-3 where corners point inwards.
@@ -384,6 +386,14 @@ class AxisymmetricBody(HasCard):
             If it is not in the body, or if theta is not from -2 pi to 2 pi.
         """
         return BodyPoint(self, _point("position", position))
+
+    # The argument that gives places residual shapes.
+    yields_by: ClassVar[str] = "residual_at"
+
+    def yields_at(self, position: Any) -> bool:
+        """Return whether a place has residual shapes of its own."""
+        r, _, z = self._position(position)
+        return any(np.hypot(r - own[0], z - own[1]) <= SAME_PLACE for own in self.residual_at)
 
     def check_position(self, position: Any) -> None:
         """Raise ValueError if `position`, (r, theta, z) in metres and radians, is not in the body."""

@@ -280,6 +280,13 @@ class SolidBody(NamedPoints):
         """Largest of its sides along x, y and z [m]."""
         return float(self.mesh.size.max())
 
+    # The argument that gives points residual shapes.
+    yields_by: ClassVar[str] = "points"
+
+    def yields_at(self, position: str | Sequence[float]) -> bool:
+        """Return whether a place has residual shapes of its own, as points with a name do."""
+        return isinstance(position, str)
+
     @property
     def dimensions(self) -> str:
         """Size in words."""
