@@ -63,6 +63,24 @@ def test_pulses_at_random_are_judder():
     assert float(found.confidence) <= 0.75
 
 
+def test_noise_may_be_that_of_the_sensor():
+    """Judder has a confidence above one half only if the noise of the sensor is known to be weaker."""
+    alone = analysis.vibration_regime(vibration(noise()))
+    assert (alone.regime, float(alone.confidence)) == ("judder", 0.5)
+    assert "noise of steady sliding or of the sensor" in alone.attrs["unknown"]
+    above = analysis.vibration_regime(vibration(noise()), floor=0.01)
+    assert (above.regime, float(above.confidence)) == ("judder", 0.75)
+    assert analysis.vibration_regime(vibration(noise()), floor=1.0).regime == "quiet"
+
+
+@pytest.mark.parametrize("frequency", [12.0, 50.0, 130.0])
+def test_slow_cycles_have_their_own_frequency(frequency):
+    """A slow sine has its frequency, not that of its envelope, twice as high."""
+    found = analysis.vibration_regime(vibration(np.sin(2.0 * np.pi * frequency * TIME) + 1e-3 * noise()))
+    assert found.regime == "stick-slip"
+    assert float(found.frequency) == pytest.approx(frequency, rel=1e-2)
+
+
 def test_a_vibration_that_dies_away_or_is_as_faint_as_the_floor_is_quiet():
     ringing = np.exp(-TIME / 0.1) * np.sin(2.0 * np.pi * 900.0 * TIME)
     assert analysis.vibration_regime(vibration(ringing)).regime == "quiet"

@@ -26,8 +26,11 @@ UNKNOWN = {
     SLIPS: "whether the contact sticks in each cycle, as it would here, or separates",
     JUDDERS: "whether the contact separates, as it would here, or sticks and slips at random",
 }
+NOISE = "; without a floor, whether it is more than the noise of steady sliding or of the sensor"
 # Similarity of a vibration to itself one cycle later, from which it recurs [1], and longest cycle over its length [1].
 RECURS, LONGEST = 0.5, 0.4
+# Relative difference of the frequency of an envelope from twice that of its vibration, up to which it is just this.
+TWICE = 0.02
 # Length of the windows of an envelope [s], and ratios of the level of bursts to the threshold and to that between them.
 SMOOTHING, HALF, CLEAR = 5e-3, 2.0, 10.0
 SHORTEST_STOP = 20e-3
@@ -60,7 +63,7 @@ def vibration_regime(
     A vibration that dies away from the beginning on, or is no stronger than the `floor`, is quiet. Else it is squeal if
     its part above the lowest tone is tonal; stick-slip if it recurs in cycles slower than that; and judder if it does
     neither. Without the status of the contact the last two are not told apart for certain: their confidence is at most
-    0.75.
+    0.75, and that of judder without a `floor` 0.5, as steady sliding makes noise, too.
 
     Parameters
     ----------
@@ -106,9 +109,11 @@ def vibration_regime(
     name, margin = _decided(level, still, heard, recurrence, limits)
     spectrum = audible_spectrum(about[None], interval, np.array([[0, about.size]]), frame, lowest_tone)
     frequency = {SQUEALS: spectrum.pitch, SLIPS: cycle}.get(name, math.nan)
-    confidence = 0.5 + 0.5 * min(1.0, margin)
+    is_noise = name == JUDDERS and floor is None
+    most = 0.5 if is_noise else UNSEEN if name in (SLIPS, JUDDERS) else 1.0
+    unknown = f"{UNKNOWN[name]}{NOISE}" if is_noise else UNKNOWN[name]
     numbers = {
-        "confidence": min(confidence, UNSEEN) if name in (SLIPS, JUDDERS) else confidence,
+        "confidence": min(0.5 + 0.5 * min(1.0, margin), most),
         "tonality": heard.tonality,
         "audibility": heard.level / level if level > 0.0 else 0.0,
         "growth": heard.growth,
@@ -119,7 +124,7 @@ def vibration_regime(
     pitch = ((), frequency, {"units": "Hz", "long_name": "pitch of the tone, or frequency of the cycles"})
     words = {"units": "1", "long_name": "regime that the vibration suggests"}
     return xr.Dataset(
-        {"regime": ((), name, words), **measures, "level": size, "frequency": pitch}, attrs={"unknown": UNKNOWN[name]}
+        {"regime": ((), name, words), **measures, "level": size, "frequency": pitch}, attrs={"unknown": unknown}
     )
 
 
@@ -192,12 +197,14 @@ def _audible(values: Array, interval: float, limits: Thresholds) -> Frames:
 def _recurrence(values: Array, interval: float, lowest_tone: float) -> tuple[float, float]:
     """Return the recurrence of a vibration or of its envelope, whichever is larger, and its frequency [Hz].
 
-    The envelope shows cycles whose vibration starts anew each time.
+    The envelope shows cycles whose vibration starts anew each time; that of one that recurs itself has twice its
+    frequency.
     """
     width = max(1, 2 * round(0.25 / (lowest_tone * interval) / 2.0) + 1)
     size = np.sqrt(np.maximum(moving_mean(values**2, width), 0.0))
-    found = _cycle(values, interval, lowest_tone), _cycle(size - size.mean(), interval, lowest_tone)
-    return max(found, key=lambda pair: pair[0])
+    own, found = _cycle(values, interval, lowest_tone), _cycle(size - size.mean(), interval, lowest_tone)
+    is_twice = own[0] >= RECURS and abs(found[1] / own[1] - 2.0) < TWICE
+    return own if is_twice else max(own, found, key=lambda pair: pair[0])
 
 
 def _cycle(values: Array, interval: float, lowest_tone: float) -> tuple[float, float]:
