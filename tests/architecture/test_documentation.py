@@ -17,6 +17,8 @@ ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = [path for folder in (".", "tutorials") for path in sorted((ROOT / "examples" / folder).glob("*.py"))]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.rst")), *SCRIPTS]
 HELP = ROOT / "src" / "stridula" / "cli" / "commands.py"
+# Setting with the codes of numpydoc that the pages must not have.
+CHECKS = "numpydoc_validation_checks"
 # Phrases that readers did not understand, and their replacements.
 RIDDLES = {
     r"\b(gone|goes|go) on from\b": "continue",
@@ -100,6 +102,26 @@ def faults_of_layout(text: str) -> list[str]:
 def test_docstrings_are_laid_out_as_sphinx_reads_them():
     faults = {name: faults_of_layout(inspect.getdoc(getattr(stridula, name)) or "") for name in stridula.__all__}
     assert {name: found for name, found in faults.items() if found} == {}
+
+
+def faults_of_sections(name: str) -> list[str]:
+    """Return the complaints of numpydoc, of the kinds that the settings choose, about a public name."""
+    validate = pytest.importorskip("numpydoc.validate", reason="the extra docs is not installed").validate
+    return [f"{code} {words}" for code, words in validate(name)["errors"] if code in settings()[CHECKS]]
+
+
+def test_docstrings_have_the_sections_that_sphinx_checks():
+    names = [f"stridula.{name}" for name in stridula.__all__ if callable(getattr(stridula, name))]
+    parts = ((part, inspect.getmodule(part)) for part in (stridula.analysis, stridula.plot))
+    names += [f"{module.__name__}.{name}" for part, module in parts for name in part.__all__]
+    faults = {name: faults_of_sections(name) for name in names}
+    assert {name: found for name, found in faults.items() if found} == {}
+
+
+def test_a_parameter_without_a_type_is_seen(monkeypatch):
+    """Negative control."""
+    monkeypatch.setattr(stridula.sweep, "__doc__", "Do it.\n\nParameters\n----------\nscenario\n    One.\n")
+    assert any(found.startswith("PR04") for found in faults_of_sections("stridula.sweep"))
 
 
 def test_a_line_that_is_indented_too_far_is_seen():

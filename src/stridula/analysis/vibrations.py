@@ -73,10 +73,12 @@ def vibration_regime(
         Time at the beginning that is ignored [s]; a tenth of the signal if left out.
     floor : float, optional
         Root mean square of the signal at rest, in its units.
-    tonal, lowest_tone, frame, rate
-        As for `regime`.
+    tonal : float, optional
+        Share of the power above the lowest tone, from which a tone is squeal [1], as for `regime`.
     faint : float, optional
         Share of the vibration above the lowest tone, below which its tone does not count [1].
+    lowest_tone, frame, rate : float, optional
+        Lowest frequency of a tone [Hz], length of frames [s] and sample rate of their means [Hz], as for `regime`.
 
     Returns
     -------

@@ -95,8 +95,14 @@ def read_signals(
         The file, as for `read_signal`.
     channels : sequence of str, optional
         Names of the channels; all of them if left out.
-    calibration, units, sample_rate, decimal
-        As for `read_signal`.
+    calibration : float or mapping, optional
+        Value of a sample of 1, as for `read_signal`.
+    units : str or mapping, optional
+        Units of the result, as for `read_signal`.
+    sample_rate : float, optional
+        Sample rate [Hz] of a file that does not state one.
+    decimal : {".", ","}, optional
+        Decimal mark of a table.
 
     Returns
     -------
