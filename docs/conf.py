@@ -1,6 +1,6 @@
 """Sphinx settings, and what is written before each build: the API page, tables, and the paper from end to end.
 
-Everything written lies in ``_generated``, ``gallery`` or ``tutorials`` or is ``api.rst`` or ``api-modules.rst``; none
+Everything written lies in ``_generated``, ``gallery`` or ``tutorials`` or is one of the pages ``api*.rst``; none
 of it is kept under version control.
 """
 
@@ -192,6 +192,10 @@ HOMES = {
 }
 
 
+# Beginnings of the homes of names on the second page.
+MEASURES = ("acoustics", "analysis", "bars", "cycles", "signals", "studies")
+
+
 def write(path: Path, text: str) -> None:
     """Write a text unless it is already there, so that unchanged pages are not built again."""
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -232,18 +236,32 @@ def api_page() -> str:
         "API",
         "===",
         "",
-        "Attributes of ``stridula`` itself, grouped like the folders of the package. :doc:`api-modules` lists the",
-        "public names of its modules.",
+        "Attributes of ``stridula`` itself, grouped like the folders of the package; :doc:`api-measures` has those of",
+        "measures, sound and studies. :doc:`api-modules` lists the public names of its modules.",
         "",
         ".. toctree::",
         "   :hidden:",
         "",
+        "   api-measures",
         "   api-modules",
         "",
     ]
+    return "\n".join([*parts, *api_groups(False)])
+
+
+def api_measures_page() -> str:
+    """Return the page of the public names of the package that take records, signals and sound, or make many runs."""
+    title = "API of measures, sound and studies"
+    return "\n".join([title, "=" * len(title), "", *api_groups(True)])
+
+
+def api_groups(measures: bool) -> list[str]:
+    """Return the groups of names of one of the two pages."""
+    parts: list[str] = []
     for home, names in stridula._HOME.items():
-        parts += api_group(HOMES.get(home, home), f"stridula.{home}", "stridula", names)
-    return "\n".join(parts)
+        if home.startswith(MEASURES) == measures:
+            parts += api_group(HOMES.get(home, home), f"stridula.{home}", "stridula", names)
+    return parts
 
 
 def api_modules_page() -> str:
@@ -528,7 +546,7 @@ def verification_cells(row: dict[str, Any]) -> list[str]:
 
 def setup(app: Sphinx) -> None:
     """Write what is generated, before Sphinx looks for pages."""
-    pages = {"api": api_page(), "api-modules": api_modules_page()}
+    pages = {"api": api_page(), "api-measures": api_measures_page(), "api-modules": api_modules_page()}
     drop_stale_stubs("\n".join(pages.values()))
     for name, text in pages.items():
         write(HERE / f"{name}.rst", text)

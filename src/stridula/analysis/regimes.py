@@ -203,7 +203,7 @@ def _is_usable(run: PlainRecord) -> bool:
 def _checked(run: Any) -> PlainRecord:
     """Return the plain arrays of a record; raise ValueError unless it has the required variables."""
     if isinstance(run, xr.DataArray):
-        raise ArgumentError("run", "be a record", run, got="a signal: analysis.vibration_regime takes one")
+        raise ArgumentError("run", "be a record, a Dataset (analysis.vibration_regime takes a signal)", run)
     given = run.labelled(*run.variables) if hasattr(run, "labelled") else run
     held = by_point(checked.record("run", given, *NEEDED, least=2))
     if "landings" in held.variables:

@@ -194,20 +194,39 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
     attributes |= {"violated": "; ".join(equilibrium.violated), "round_off": round_off(structure)}
     opened = open_words(structure, equilibrium) if equilibrium.kind == LIFTED_OFF else []
     notes = [*opened, *notes_of(system, structure.arrays, AHEAD)]
+    notes += _notes_of_growth(structure, found.values.real[unstable], int(np.sum(unstable & beyond)), limit)
+    attributes["notes"] = "; ".join(notes)
+    return xr.Dataset(data, coordinates, attributes)
+
+
+def _notes_of_growth(structure: Structure, growth: Array, beyond: int, limit: float) -> list[str]:
+    """Return notes on growing modes that cannot be believed.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    growth : ndarray, shape (growing modes,)
+        Growth rates [1/s].
+    beyond : int
+        Number of growing modes above the cutoff of every body.
+    limit : float
+        This cutoff [Hz].
+    """
+    notes = []
     fastest = float(np.sqrt(np.diag(structure.stiffness)[structure.mass > 0.0].max(initial=0.0)))
-    if count := int(np.sum(unstable & (found.values.real > fastest) & (fastest > 0.0))):
+    if count := int(np.sum((growth > fastest) & (fastest > 0.0))):
         grow = "mode grows" if count == 1 else "modes grow"
         notes.append(
             f"{count} {grow} faster than any mode that is kept vibrates: residual shapes, "
             "which have no mass, are unstable under this friction"
         )
-    if count := int(np.sum(unstable & beyond)):
-        lie = "mode lies" if count == 1 else "modes lie"
+    if beyond:
+        lie = "mode lies" if beyond == 1 else "modes lie"
         notes.append(
-            f"{count} growing {lie} above the cutoff of every body, {limit:.4g} Hz, without the modes left out"
+            f"{beyond} growing {lie} above the cutoff of every body, {limit:.4g} Hz, without the modes left out"
         )
-    attributes["notes"] = "; ".join(notes)
-    return xr.Dataset(data, coordinates, attributes)
+    return notes
 
 
 def _kinetic(structure: Structure, shapes: Array) -> Array:
