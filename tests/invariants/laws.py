@@ -103,8 +103,7 @@ def of_changing(law, status, forces, state, slip, small, step):
         ratio, margin = tangential[n] / normal[n], TOLERANCE * peak / normal[n] + 1e-9
         near = slip[n - 2 : n + 2] / step
         # The mean velocity of a step is known; within one it changes by about as much as from one to the next.
-        # A landing changes it at once; velocities half a step apart then alternate about the means, which hide it.
-        spread = 2.0 * np.abs(np.diff(slip[n - 3 : n + 2] / step)).max() + small / step
+        spread = 2.0 * np.abs(np.diff(near)).max() + small / step
         speeds = np.linspace(near[:3].min() - spread, near[:3].max() + spread, 9)
         if isinstance(law, st.RateAndState):
             # Creep changes by decades from one step to the next.
