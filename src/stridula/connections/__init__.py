@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..arrays import Array
 from ..bodies import BodyPoint
 from ..histories import History
-from .elements import elements_of, held_motions, turns
+from .elements import elements_of, held_motions
 from .ends import ends, unit
 from .linear import Dashpot, Spring
 from .nonlinear import CubicSpring, NonlinearSpring, TabulatedSpring
@@ -25,7 +25,6 @@ __all__ = [
     "ends",
     "held_motions",
     "pushes",
-    "turns",
     "unit",
 ]
 

@@ -55,9 +55,3 @@ def elements_of(connection: Any) -> tuple[Element, ...]:
 def held_motions(connection: Any) -> tuple[Motion, ...]:
     """Return the motions that a connection prevents."""
     return getattr(connection, "held", ())
-
-
-def turns(connection: Any) -> bool:
-    """Return whether a connection acts on rotations."""
-    motions = [one.motion for one in elements_of(connection)]
-    return any(one.turns for one in (*motions, *held_motions(connection)))

@@ -111,12 +111,10 @@ class Coordinates:
         """
         found = moved.copy()
         for numbers, modes in self.joints:
-            found[numbers] = (
-                modes.blend[~self.shapes_of_bodies[numbers]].T @ moved[numbers][~self.shapes_of_bodies[numbers]]
-            )
-            found[numbers] *= ~modes.massless
+            moving = ~self.shapes_of_bodies[numbers]
+            found[numbers] = (modes.blend[moving].T @ moved[numbers][moving]) * ~modes.massless
             back = modes.blend @ found[numbers] - moved[numbers]
-            if np.linalg.norm(back[~self.shapes_of_bodies[numbers]]) > APART * np.linalg.norm(moved[numbers]):
+            if np.linalg.norm(back[moving]) > APART * np.linalg.norm(moved[numbers]):
                 words = "move bodies with a rigid joint together at the start, so that their joined points do not part"
                 raise ArgumentError("drives", words, got="a motion of one against the other")
         return found
