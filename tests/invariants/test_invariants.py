@@ -80,9 +80,33 @@ GIVING = Recipe(
 )
 
 
+# Landing under friction that rises with the speed: within the step of the impulse the slip passes zero, not after it.
+LANDING = Recipe(
+    kind="slider",
+    feet=(
+        Foot(
+            law=st.TabulatedFriction((0.0, 0.1, 0.3, 2.0), (0.25, 0.5, 0.5, 0.5)),
+            gap=3e-5,
+            inclination=0.0,
+            belt=0.0,
+            lift=0.0,
+            frequency=30.0,
+        ),
+    ),
+    masses=(1.0,),
+    springs=(100.0,),
+    dashpots=(1.0,),
+    load=10.0,
+    speed=0.0,
+    angle=0.0,
+)
+
+
 @given(recipes(), schemes)
 @example(STRUCK, SCHEMES[0])
 @example(GIVING, SCHEMES[0])
+@example(LANDING, SCHEMES[0])
+@example(LANDING, SCHEMES[1])
 @settings(max_examples=150, deadline=None)
 def test_laws_hold_at_every_step(recipe, scheme):
     assert violations(solved(recipe, scheme, STEPS), build(recipe)) == set()

@@ -92,7 +92,10 @@ def on_its_way(before, free, normal, h):
         short = 2 * (needed - past)
         if abs(short) <= held:
             return Way(needed, short / 2, STICKING, 1.0)
-        return Sliding(law, h, pull, 2 * pull * (driven - past)).follow(0.0, 0.0, np.sign(short), past)
+        left = 2 * pull * (driven - past)
+        most = abs(left) * max(1.0 - laws.held_up_to(law, not free.let_go) / abs(short), 0.0)
+        u = np.clip(begun + free.strayed / 2 - pull * past, -most, most)
+        return Sliding(law, h, pull, left - 2 * u).follow(u, 0.0, np.sign(u) or np.sign(short), past)
     if before.status == SEPARATED:
         if abs(needed) <= held:
             return Way(needed, needed / 2, STICKING, 1.0)

@@ -179,6 +179,12 @@ def ratio_of_stick(gap: Number, missed: Number, w: Compliance, otherwise: Number
     return held / pressed if pressed * (w.nn * w.tt - w.nt * w.tn) > 0.0 else otherwise
 
 
+@strict_pasted
+def beyond_hold(slip: Number, ratio: Number, held: Number) -> Number:
+    """Return the share of a slip that remains of its ratio beyond the one that holds."""
+    return slip * (1.0 - held / ratio) if ratio > held else 0.0
+
+
 @strict
 def ratio_over_step(
     normal: Number, free: Free, law: Law, before: Before, step: Number
@@ -224,9 +230,12 @@ def ratio_over_step(
         short = 2.0 * (needed - past)
         if free.let_go <= 0.5 and abs(short) <= held:
             return needed, 0.5 * short, STICKING, 1.0
-        sense = 1.0 if short > 0.0 else -1.0
-        drive = Drive(2.0 * pull * (driven - past), 0.0)
-        more, rest, stuck = slide_through(0.0, 0.0, drive, pull, sense, law, step)
+        # What cannot be held has the slip that this normal force leaves it, at most as much as what exceeds the hold.
+        left = 2.0 * pull * (driven - past)
+        slip_at_step = within(0.5 * (last + moved + strayed) - pull * past, beyond_hold(abs(left), abs(short), held))
+        sense = 1.0 if slip_at_step > 0.0 or (slip_at_step == 0.0 and short > 0.0) else -1.0
+        drive = Drive(left - 2.0 * slip_at_step, 0.0)
+        more, rest, stuck = slide_through(slip_at_step, 0.0, drive, pull, sense, law, step)
         return past + more, rest, STOPPED if stuck > 0.0 else SLIDING, stuck
     begun = 0.5 * (last + moved)
     if was == SLIDING:

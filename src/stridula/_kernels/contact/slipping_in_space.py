@@ -46,6 +46,7 @@ from .slipping import (
     STAGE,
     STICKING,
     STOPPED,
+    beyond_hold,
     changed_to,
     moments,
     part_of,
@@ -394,8 +395,13 @@ def ratio_over_step(
         if free.let_go <= 0.5 and 2.0 * size_of(half) <= held:
             return needed, half, STICKING, 1.0
         left = scaled(2.0, plus(missed, -1.0, times(pull, past)))
-        way = direction_of(left, ALONG_A)
-        more, rest, stuck = slide_through(NOTHING, 0.0, DriveInSpace(left, NOTHING), pull, way, law, step)
+        # As in the plane.
+        slip = plus(scaled(0.5, plus(last, 1.0, missed)), -1.0, times(pull, past))
+        slip = shortened(slip, beyond_hold(size_of(left), 2.0 * size_of(half), held))
+        way = direction_of(slip, direction_of(left, ALONG_A))
+        more, rest, stuck = slide_through(
+            slip, 0.0, DriveInSpace(plus(left, -2.0, slip), NOTHING), pull, way, law, step
+        )
         return plus(past, 1.0, more), rest, STOPPED if stuck > 0.0 else SLIDING, stuck
     # It lands: half of its force acts before the step.
     if free.let_go <= 0.5 and asked <= held:
