@@ -77,6 +77,7 @@ from .connections import Dashpot as Dashpot
 from .connections import RigidJoint as RigidJoint
 from .connections import Spring as Spring
 from .connections import TabulatedSpring as TabulatedSpring
+from .connections import ViscoelasticSpring as ViscoelasticSpring
 from .contact import Coulomb as Coulomb
 from .contact import ExponentialWeakening as ExponentialWeakening
 from .contact import FrictionAlongTrack as FrictionAlongTrack

@@ -33,7 +33,7 @@ class System:
         Contacts between the bodies. The first one defines the slider (its tip's body) and the track.
     drives : sequence of Force, ImposedVelocity, Gravity, InitialVelocity, InitialState or InitialEquilibrium, optional
         Loads, prescribed motion and initial conditions.
-    connections : sequence of Spring, Dashpot, CubicSpring, TabulatedSpring, Bushing or RigidJoint, optional
+    connections : sequence of Spring, Dashpot, Bushing, RigidJoint or another connection, optional
         Springs, dashpots, mounts and joints between bodies.
 
     Raises

@@ -88,6 +88,20 @@ def check_cut_off_modes(names: Mapping[str, Any], printed: str, folder: Path) ->
     assert (folder / "cut-off-modes.png").read_bytes().startswith(b"\x89PNG")
 
 
+def check_brake_shim(names: Mapping[str, Any], printed: str, folder: Path) -> None:
+    """A stiffness alone does not silence the brake, a loss does; the run of the silent one decays."""
+    rate = float(re.search(r"without a shim: (\d+) /s", printed)[1])
+    assert rate == pytest.approx(102.0, rel=0.02)
+    for modes in names["found"].values():
+        growths = [growth for growth, _ in modes]
+        assert growths[0] == max(growths) > 0.5
+        assert growths[-1] < 0.0
+    loud, quiet = (np.abs(names[run].velocity.values[:, 0]) for run in ("loud", "quiet"))
+    assert loud[-500:].max() > 2.0 * loud[-1400:-900].max()
+    assert quiet[-500:].max() < 0.5 * quiet[:500].max()
+    assert (folder / "brake_shim.png").read_bytes().startswith(b"\x89PNG")
+
+
 def check_brake_pad(names: Mapping[str, Any], printed: str, folder: Path) -> None:
     """More friction lets modes of disc and pad grow; the ledger closes, and forces are about those of theory."""
     growing = re.findall(r"^friction (\S+): .*growing modes \[Hz\]: (.+)$", printed, re.MULTILINE)
@@ -219,6 +233,7 @@ def check_lining(names: Mapping[str, Any], printed: str, folder: Path) -> None:
 CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
     "brake.py": check_brake,
     "brake_pad.py": check_brake_pad,
+    "brake_shim.py": check_brake_shim,
     "cut_off_modes.py": check_cut_off_modes,
     "lining.py": check_lining,
     "mass_on_a_belt.py": check_mass_on_a_belt,

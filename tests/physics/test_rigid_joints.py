@@ -432,6 +432,14 @@ def test_growth_without_bound_is_noted(monkeypatch):
     assert "faster than" not in st.sliding_stability(brake).attrs["notes"]
 
 
+def test_a_bushing_along_one_axis_is_drawn():
+    mass = st.PointMass(2.0)
+    mount = st.Bushing(mass.centre, stiffness=[50.0, 0.0, 0.0])
+    figure = st.plot.system(st.System(st.PointContact(mass.centre, st.RigidTrack()), [], [mount]))
+    words = " ".join(text.get_text() for text in figure.findobj(match=lambda one: hasattr(one, "get_text")))
+    assert "bushing 50, 0, 0 N/m along x, y, z" in words
+
+
 def test_joints_and_bushings_are_drawn_and_named():
     one, two = st.PointMass(0.5, "a"), st.PointMass(0.8, "b")
     contact = st.PointContact(two.centre, BELT)

@@ -146,7 +146,7 @@ def test_lists_of_systems():
     for value in (None, spring, "spring", 3):
         with pytest.raises(ValueError, match=r"^connections must be a list of connections, got "):
             st.System(contact, (), value)
-    kinds = "Spring or Dashpot or CubicSpring or TabulatedSpring or Bushing or RigidJoint"
+    kinds = "Spring or Dashpot or CubicSpring or TabulatedSpring or ViscoelasticSpring or Bushing or RigidJoint"
     with pytest.raises(ValueError, match=rf"^connections\[0\] must be a {kinds}, got "):
         st.System(contact, (), [contact])
     with pytest.raises(ValueError, match=r"^contact must hold at least one PointContact, got none"):

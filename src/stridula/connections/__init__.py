@@ -1,15 +1,16 @@
-"""Connections between bodies: springs, linear and not, dashpots, bushings and rigid joints."""
+"""Connections between bodies: springs, linear, nonlinear and viscoelastic, dashpots, bushings and rigid joints."""
 
 from __future__ import annotations
 
 from ..arrays import Array
 from ..bodies import BodyPoint
 from ..histories import History
-from .elements import elements_of, held_motions
+from .elements import branches_of, elements_of, held_motions
 from .ends import ends, unit
 from .linear import Dashpot, Spring
 from .nonlinear import CubicSpring, NonlinearSpring, TabulatedSpring
 from .rigid import Bushing, RigidJoint
+from .viscoelastic import ViscoelasticSpring
 
 __all__ = [
     "CONNECTIONS",
@@ -21,6 +22,8 @@ __all__ = [
     "RigidJoint",
     "Spring",
     "TabulatedSpring",
+    "ViscoelasticSpring",
+    "branches_of",
     "elements_of",
     "ends",
     "held_motions",
@@ -28,8 +31,8 @@ __all__ = [
     "unit",
 ]
 
-Connection = Spring | Dashpot | NonlinearSpring | Bushing | RigidJoint
-CONNECTIONS = (Spring, Dashpot, CubicSpring, TabulatedSpring, Bushing, RigidJoint)
+Connection = Spring | Dashpot | NonlinearSpring | ViscoelasticSpring | Bushing | RigidJoint
+CONNECTIONS = (Spring, Dashpot, CubicSpring, TabulatedSpring, ViscoelasticSpring, Bushing, RigidJoint)
 
 
 def pushes(connection: Connection) -> list[tuple[History, BodyPoint, Array]]:

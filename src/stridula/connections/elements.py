@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
+from .branches import Branch
 from .ends import unit
 
 
@@ -50,6 +51,11 @@ def elements_of(connection: Any) -> tuple[Element, ...]:
     """Return the linear parts of a connection."""
     own: tuple[Element, ...] | None = getattr(connection, "elements", None)
     return (Element(Motion(unit(connection)), *connection.rates),) if own is None else own
+
+
+def branches_of(connection: Any) -> tuple[Branch, ...]:
+    """Return the springs of a connection that relax, along its direction."""
+    return getattr(connection, "branches", ())
 
 
 def held_motions(connection: Any) -> tuple[Motion, ...]:

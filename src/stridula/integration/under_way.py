@@ -154,7 +154,7 @@ def changed(before: UnderWay, marched: Marched) -> UnderWay | None:
     None if the motion cannot be transferred to it, or its tips would not be on the track.
     """
     was, system = before.marched, marched.system
-    kept = Before(was.system, was.scheme, before.arrays.spans, was.step)
+    kept = Before(was.system, was.scheme, before.arrays.spans, before.arrays.relaxing, was.step)
     if not kept.goes_on_as(system):
         return None
     change = _Change(before, marched)

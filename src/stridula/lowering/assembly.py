@@ -62,6 +62,8 @@ class Assembly:
         Descriptions that determine signals and motion over time.
     spans : dict
         First mode of each body and end of its range, by the body's name.
+    relaxing : tuple of int
+        First of the inner motions of viscoelastic springs, and end of their range.
     blend : ndarray, shape (joined, joined)
         Matrix from the first coordinates to those of joined bodies, if they have residual shapes or rigid joints; else
         empty.
@@ -88,6 +90,7 @@ class Assembly:
     probes: list[ProbeRows]
     prescribed: Prescribed
     spans: dict[str, tuple[int, int]]
+    relaxing: tuple[int, int]
     blend: Array
     turning: tuple[TurningModes, ...]
 
@@ -157,6 +160,7 @@ def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:
         probes=[],
         prescribed=prescribed_of(system, histories),
         spans={system.body_name(body): coordinates.spans[body] for body in system.bodies},
+        relaxing=coordinates.spans.get(coordinates.relaxing, (0, 0)),
         blend=coordinates.blend,
         turning=turning,
     )

@@ -35,6 +35,8 @@ class Before:
         Its time scheme.
     spans : dict
         First mode of each body and end of its range, by the body's name.
+    relaxing : tuple of int
+        First of the inner motions of viscoelastic springs, and end of their range.
     step : float
         Its time step [s].
     """
@@ -42,6 +44,7 @@ class Before:
     system: System
     scheme: Scheme
     spans: dict[str, tuple[int, int]]
+    relaxing: tuple[int, int]
     step: float
 
     def goes_on_as(self, system: System) -> bool:
@@ -73,6 +76,8 @@ class Before:
             if held:
                 # A change of the root's velocity does not change that of the body at once.
                 velocity[new] -= speed_up * now.modes(held).translation[0]
+        old, new = slice(*self.relaxing), slice(*arrays.relaxing)
+        position[new], velocity[new] = state.modal[at.Q, old], state.modal[at.D, old] / self.step
         return position, velocity
 
 

@@ -12,11 +12,12 @@ from ..arrays import Array
 from ..bodies import BodyPoint
 from ..bodies.modes import Modes
 from ..checks import ArgumentError
-from ..connections import ends, held_motions
+from ..connections import ends, held_motions, unit
 from ..connections.elements import Motion, elements_of
 from ..ordinary import check_coupled_count
 from ..system import System
 from .joints import JointModes, joint_modes
+from .relaxing import Relaxing
 
 # Largest difference of a start from the motion that a rigid joint allows, relative to it.
 APART = 1e-9
@@ -48,9 +49,19 @@ class Coordinates:
         return tuple(body for body in bodies if body in named or self.modes(body).damping_matrix is not None)
 
     @cached_property
+    def relaxing(self) -> Relaxing:
+        """The inner motions of viscoelastic springs."""
+        return Relaxing(self.system)
+
+    @property
+    def coupled(self) -> tuple[Any, ...]:
+        """What may be coupled: joined bodies, and the inner motions of their springs."""
+        return (*self.joined, *([self.relaxing] if self.relaxing.motions else []))
+
+    @cached_property
     def order(self) -> tuple[Any, ...]:
-        """The bodies, joined ones first."""
-        return (*self.joined, *(body for body in self.system.bodies if body not in self.joined))
+        """The bodies and inner motions, those that may be coupled first."""
+        return (*self.coupled, *(body for body in self.system.bodies if body not in self.joined))
 
     @cached_property
     def spans(self) -> dict[Any, tuple[int, int]]:
@@ -60,6 +71,11 @@ class Coordinates:
             found[body] = (start, start + self.modes(body).count)
             start = found[body][1]
         return found
+
+    @property
+    def first_relaxing(self) -> int:
+        """Number of the first inner motion, that of the first mode of bodies apart if there is none."""
+        return sum(self.modes(body).count for body in self.joined)
 
     @cached_property
     def size(self) -> int:
@@ -215,10 +231,10 @@ class Coordinates:
 
 def _matrices(coordinates: Coordinates) -> tuple[Array, Array, Array]:
     """Return the stiffness of each mode of joined bodies, that of connections as a matrix, and the damping matrix."""
-    size = sum(coordinates.modes(body).count for body in coordinates.joined)
+    size = sum(coordinates.modes(body).count for body in coordinates.coupled)
     check_coupled_count(size)
     own, stiffness, dissipation = np.zeros(size), np.zeros((size, size)), np.zeros((size, size))
-    for body in coordinates.joined:
+    for body in coordinates.coupled:
         modes, span = coordinates.modes(body), slice(*coordinates.spans[body])
         own[span] = modes.stiffness
         damped = np.diag(modes.damping_rate)
@@ -229,6 +245,12 @@ def _matrices(coordinates: Coordinates) -> tuple[Array, Array, Array]:
             for matrix, rate in zip((stiffness, dissipation), rates, strict=True):
                 if rate:
                     matrix += rate * np.outer(row, row)
+    for number, (connection, branch) in enumerate(coordinates.relaxing.motions, coordinates.first_relaxing):
+        # The spring of a branch acts between the ends and the inner motion, of unit mass.
+        row = coordinates.between(connection, Motion(unit(connection)))[:size]
+        across = -np.sqrt(branch.stiffness) * branch.angular_frequency * row
+        stiffness[number] += across
+        stiffness[:, number] += across
     return own, stiffness, dissipation
 
 

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from ..arrays import Array
 from ..cards import spoken
-from ..connections import elements_of, ends, unit
+from ..connections import ends, unit
 from ..histories import History
 from ..lines import outlines_of, places_in
 from ..system import System
@@ -429,7 +429,7 @@ def supports_of(body: Any) -> tuple[str, ...]:
 
 def connection_value(connection: Any) -> str:
     """Return a description of the stiffness or coefficient of a connection, and of its motion."""
-    if len(elements_of(connection)) != 1:
+    if not hasattr(connection, "rates"):
         return str(connection).removeprefix(connection.kind).strip()
     if connection.bend is not None:
         return f"{spoken(connection.stiffness_at_rest, 'N/m')} at rest"

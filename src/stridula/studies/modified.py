@@ -32,7 +32,7 @@ def modify(
         The system.
     masses : sequence of (BodyPoint, float), optional
         Points, and the mass that is bolted to each [kg]. It does not turn.
-    connections : sequence of Spring, Dashpot, CubicSpring, TabulatedSpring, Bushing or RigidJoint, optional
+    connections : sequence of Spring, Dashpot, Bushing, RigidJoint or another connection, optional
         Connections in addition to those of the system.
     friction : FrictionLaw or mapping of str to FrictionLaw, optional
         Law of all contacts, or laws by the name of a contact or of a surface.
