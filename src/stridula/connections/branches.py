@@ -98,13 +98,13 @@ def _with_branches(angular: Array, table: Array, count: int) -> list[Relaxation]
     low, high = np.log(angular[0]), np.log(angular[-1])
     spread = (np.arange(count) + 0.5) / count
     found = []
-    for wider in (0.3, 1.5):
+    for wider in (0.3, 1.0):
         guess = low - wider + (high - low + 2.0 * wider) * spread
 
         def missed(rates: Array) -> Array:
             return _missed(_fitted(angular, table, np.exp(rates)).stiffness(angular), table)
 
-        bounds = (low - 4.0, high + 2.0)
+        bounds = (low - 4.0, high + 1.0)
         result = least_squares(missed, guess, bounds=bounds, max_nfev=TRIALS)
         found.append(_fitted(angular, table, np.exp(result.x)))
     return found

@@ -245,9 +245,9 @@ def _matrices(coordinates: Coordinates) -> tuple[Array, Array, Array]:
             for matrix, rate in zip((stiffness, dissipation), rates, strict=True):
                 if rate:
                     matrix += rate * np.outer(row, row)
-    for number, (connection, branch) in enumerate(coordinates.relaxing.motions, coordinates.first_relaxing):
-        # The spring of a branch acts between the ends and the inner motion, of unit mass.
-        row = coordinates.between(connection, Motion(unit(connection)))[:size]
+    for number, (spring, branch) in enumerate(coordinates.relaxing.motions, coordinates.first_relaxing):
+        # That of a branch acts between the ends and the inner motion, of unit mass.
+        row = coordinates.between(spring, Motion(unit(spring)))[:size]
         across = -np.sqrt(branch.stiffness) * branch.angular_frequency * row
         stiffness[number] += across
         stiffness[:, number] += across

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,13 +17,13 @@ class InnerMotion(NamedTuple):
 
     Attributes
     ----------
-    connection : object
+    spring : ViscoelasticSpring
         The spring.
     branch : Branch
         The branch.
     """
 
-    connection: object
+    spring: Any
     branch: Branch
 
 
