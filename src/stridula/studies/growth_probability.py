@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,18 +15,20 @@ import xarray as xr
 from ..analysis.stability import highest_cutoff
 from ..arrays import Array
 from ..checks import ArgumentError, by_key, count, finite, one_or_each, positive, rising, within
-from ..linear.growth import growth_of
+from ..linear.growth import Growth
 from ..records.variables import described
 from ..scenarios.quantities import quantity
+from ..system import System
 from ..version import __version__
 from .computed import Plan, Watcher, check_options, computed
 from .frequency_bands import bands_of, edges_between
 from .points import POINT, plain_python
 from .probabilities import BOUNDS, shares_of, wilson_interval
 from .random_points import RandomPoints
-from .sources import Source, SystemOf, varying
+from .sources import SystemOf, varying
 from .swept import coordinates, usual_failure
-from .task import NOT_BUILT, NOT_SIMULATED, Outcome, failing
+from .task import Outcome
+from .theory_task import TheoryTask
 
 STABLE, UNSTABLE = "stable", "unstable"
 VERDICTS = (STABLE, UNSTABLE, "held", "lifted off", "jammed")
@@ -150,40 +152,26 @@ def mode_probability(
 
 
 @dataclass(frozen=True)
-class _Task:
-    """Linear theory at each point."""
+class _Task(TheoryTask):
+    """The growing modes up to a frequency [Hz] at each point."""
 
-    source: Source
     highest: float
-    velocity: Any
 
-    def outcomes(
-        self, points: Sequence[Sequence[Any]], workers: int = 1, watch: Callable[[], None] = lambda: None
-    ) -> list[Outcome]:
-        """Return the outcomes of some points, identical to the last bit for the same points."""
-        return [self._outcome(values, watch) for values in points]
-
-    def _outcome(self, values: Sequence[Any], watch: Callable[[], None]) -> Outcome:
-        watch()
-        outcome: Outcome = {"ended": NOT_SIMULATED, "message": "", "values": {}}
-        with failing(outcome, NOT_BUILT):
-            system = self.source.scenario(values).system
-            known = growth_of(system, self.velocity)
-            counted = np.empty(0, dtype=complex) if known.exponents is None else known.exponents
-            most = 2.0 * np.pi * self.highest
-            counted, growing = (one[one.imag <= most] for one in (counted, known.growing))
-            kind = known.equilibrium.kind
-            limit = highest_cutoff(system)
-            outcome["ended"] = kind if known.exponents is None else UNSTABLE if growing.size else STABLE
-            outcome["values"] = {
-                "growth_rate": float(counted.real.max()) if counted.size else None,
-                "modes": [[float(one.imag / (2.0 * np.pi)), float(one.real)] for one in growing],
-                "several": known.equilibrium.found == "several",
-                "violated": known.equilibrium.found == "none found",
-                "complete": known.complete,
-                "limit": limit if math.isfinite(limit) else None,
-            }
-        return outcome
+    def kept(self, system: System, known: Growth) -> tuple[str, dict[str, Any]]:
+        """Return the verdict of a point, its growing modes, and what is known of its equilibrium."""
+        counted = np.empty(0, dtype=complex) if known.exponents is None else known.exponents
+        most = 2.0 * np.pi * self.highest
+        counted, growing = (one[one.imag <= most] for one in (counted, known.growing))
+        limit = highest_cutoff(system)
+        verdict = UNSTABLE if growing.size else STABLE
+        return known.equilibrium.kind if known.exponents is None else verdict, {
+            "growth_rate": float(counted.real.max()) if counted.size else None,
+            "modes": [[float(one.imag / (2.0 * np.pi)), float(one.real)] for one in growing],
+            "several": known.equilibrium.found == "several",
+            "violated": known.equilibrium.found == "none found",
+            "complete": known.complete,
+            "limit": limit if math.isfinite(limit) else None,
+        }
 
 
 def _counted(

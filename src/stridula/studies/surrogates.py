@@ -17,8 +17,9 @@ from ..analysis.stability import highest_cutoff
 from ..arrays import Array
 from ..checks import ArgumentError, by_key, choice, count, finite, one_or_each, within
 from ..extras import require
-from ..linear.growth import growth_of
+from ..linear.growth import Growth
 from ..records.variables import described
+from ..system import System
 from ..version import __version__
 from .computed import Plan, Watcher, check_options, computed
 from .distributions import is_range
@@ -27,9 +28,10 @@ from .points import plain_python
 from .probabilities import BOUNDS, wilson_interval
 from .random_points import RandomPoints
 from .sobol import shares_for_indices, sobol_indices
-from .sources import Source, SystemOf, varying
+from .sources import SystemOf, varying
 from .swept import usual_failure
-from .task import NOT_BUILT, NOT_SIMULATED, Outcome, failing
+from .task import Outcome
+from .theory_task import TheoryTask
 
 CHAOS, KRIGING = "chaos", "kriging"
 POINTS_OF_A_PART = 16
@@ -144,43 +146,37 @@ def mode_surrogate(
     def labelled(outcomes: Sequence[Outcome]) -> xr.Dataset:
         return fit.dataset(outcomes, attributes)
 
-    task = _Task(found.source, (ends[0], ends[1]), speed)
+    task = _Task(found.source, speed, (ends[0], ends[1]))
     plan = Plan("surrogate", task, found.values, POINTS_OF_A_PART, attributes, labelled)
     return computed(plan, out, workers, client, watchers, progress)
 
 
 @dataclass(frozen=True)
-class _Task:
-    """The exponents in a band at each point."""
+class _Task(TheoryTask):
+    """The exponents in a band [Hz] at each point."""
 
-    source: Source
     band: tuple[float, float]
-    velocity: Any
 
-    def outcomes(
-        self, points: Sequence[Sequence[Any]], workers: int = 1, watch: Callable[[], None] = lambda: None
-    ) -> list[Outcome]:
-        """Return the outcomes of some points, identical to the last bit for the same points."""
-        return [self._outcome(values, watch) for values in points]
+    def kept(self, system: System, known: Growth) -> tuple[str, dict[str, Any]]:
+        """Return the exponents in the band, and the growth that is round-off.
 
-    def _outcome(self, values: Sequence[Any], watch: Callable[[], None]) -> Outcome:
-        watch()
-        outcome: Outcome = {"ended": NOT_SIMULATED, "message": "", "values": {}}
-        with failing(outcome, NOT_BUILT):
-            system = self.source.scenario(values).system
-            known = growth_of(system, self.velocity)
-            outcome["ended"] = known.equilibrium.kind
-            if known.exponents is None:
-                raise ArgumentError("uncertain", "let the contacts slide at every point", got=known.equilibrium.kind)
-            low, high = (2.0 * np.pi * end for end in self.band)
-            # Motions that creep pass through every band of frequency, far below the others.
-            slow = known.exponents[known.exponents.real >= -0.5 * (high - low)]
-            inside = slow[(slow.imag >= low) & (slow.imag <= high)]
-            inside = inside[np.lexsort((inside.real, inside.imag))]
-            outcome["values"]["modes"] = [[float(one.real), float(one.imag)] for one in inside]
-            outcome["values"]["beyond"] = self.band[0] > highest_cutoff(system)
-            outcome["values"]["round_off"] = known.round_off
-        return outcome
+        Raises
+        ------
+        ArgumentError
+            If the contacts do not slide.
+        """
+        if known.exponents is None:
+            raise ArgumentError("uncertain", "let the contacts slide at every point", got=known.equilibrium.kind)
+        low, high = (2.0 * np.pi * end for end in self.band)
+        # Motions that creep pass through every band of frequency, far below the others.
+        slow = known.exponents[known.exponents.real >= -0.5 * (high - low)]
+        inside = slow[(slow.imag >= low) & (slow.imag <= high)]
+        inside = inside[np.lexsort((inside.real, inside.imag))]
+        return known.equilibrium.kind, {
+            "modes": [[float(one.real), float(one.imag)] for one in inside],
+            "beyond": self.band[0] > highest_cutoff(system),
+            "round_off": known.round_off,
+        }
 
 
 @dataclass(frozen=True)
