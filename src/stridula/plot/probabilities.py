@@ -50,7 +50,7 @@ def mode_probability(found: xr.Dataset) -> Figure:
         right.plot(
             grown, place - 0.35 + 0.7 * np.arange(grown.size) / max(grown.size, 1), ".", color=LINES[1], markersize=3
         )
-    right.set_xlabel("growth rate [1/s]")
+    right.set_xlabel("growth rate where one grows, in rising order [1/s]")
     for axes in (left, right):
         axes.grid(axis="x", alpha=0.3, linewidth=0.5)
     names = [f"{one:.5g} Hz" if np.isfinite(one) else "none grows" for one in found["frequency"].values]
@@ -59,6 +59,8 @@ def mode_probability(found: xr.Dataset) -> Figure:
     failed = int(found["failed"])
     words = f", {failed} failed" if failed else ""
     figure.suptitle(
-        f"{int(found['samples'])} points{words}: any mode grows at {float(found['any_probability']):.3f}", fontsize=11
+        f"Probability that any mode grows: {float(found['any_probability']):.3f} "
+        f"({int(found['samples'])} points{words})",
+        fontsize=11,
     )
     return figure
