@@ -40,6 +40,7 @@ from .analysis.mobilities import mobility as mobility
 from .analysis.mode_effects import what_helps as what_helps
 from .analysis.record_card import RecordCard as RecordCard
 from .analysis.record_card import card as card
+from .analysis.shape_agreement import mac as mac
 from .analysis.stability import sliding_stability as sliding_stability
 from .bars import show_progress as show_progress
 from .bodies import AxisymmetricBody as AxisymmetricBody
@@ -52,6 +53,7 @@ from .bodies import Line as Line
 from .bodies import LineProfile as LineProfile
 from .bodies import Material as Material
 from .bodies import MatrixFace as MatrixFace
+from .bodies import MeasuredModes as MeasuredModes
 from .bodies import MeshPart as MeshPart
 from .bodies import MeshProfile as MeshProfile
 from .bodies import ModalBeam as ModalBeam

@@ -19,6 +19,7 @@ _HOME = {
     "bodies": "space_films",
     "directivity": "directivities",
     "friction": "laws",
+    "mac": "shape_agreements",
     "meshes": "mesh_drawings",
     "mobility": "mobilities",
     "mode_probability": "probabilities",

@@ -20,6 +20,7 @@ from .mobilities import mobility as mobility
 from .mode_films import animate_mode as animate_mode
 from .probabilities import mode_probability as mode_probability
 from .reels import Film as Film
+from .shape_agreements import mac as mac
 from .shapes_of_modes import mode_shapes as mode_shapes
 from .space_films import bodies as bodies
 from .spectra import spectrum as spectrum

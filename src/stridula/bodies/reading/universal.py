@@ -14,7 +14,17 @@ from .deck_error import DeckError
 
 @dataclass(frozen=True)
 class Dataset:
-    """A dataset: its number as text, the number of its first line, and its lines."""
+    """A dataset.
+
+    Attributes
+    ----------
+    name : str
+        Its number.
+    first : int
+        Number of its first line in the file, from 1.
+    lines : list of str
+        Its lines after the number.
+    """
 
     name: str
     first: int
