@@ -182,6 +182,7 @@ HOMES = {
     "integration": "Integration in time",
     "analysis": "Regimes",
     "analysis.record_card": "Cards of records",
+    "analysis.identification": "Modes of measured mobilities",
     "analysis.mobilities": "Mobilities",
     "analysis.mode_effects": "Effects of parameters",
     "analysis.shape_agreement": "Agreement of mode shapes",

@@ -70,7 +70,7 @@ _HOME = {
     "doubtful": ("DoubtfulValue",),
     "drives": ("Force", "Gravity", "ImposedVelocity", "InitialEquilibrium", "InitialState", "InitialVelocity"),
     "histories": ("Constant", "Harmonic", "Ramp", "Sampled"),
-    "signals": ("read_signal", "read_signals", "write_signal"),
+    "signals": ("read_mobilities", "read_signal", "read_signals", "write_signal"),
     "system": ("System",),
     "records": (
         "Acceleration",
@@ -103,6 +103,7 @@ _HOME = {
     "acoustics.squeals": ("squeal_events",),
     "acoustics.listening": ("PlayableSound", "listen"),
     "acoustics.wav": ("SoundFile", "read_wav", "write_wav"),
+    "analysis.identification": ("identify_modes",),
     "analysis.mobilities": ("mobility",),
     "analysis.mode_effects": ("what_helps",),
     "analysis.shape_agreement": ("mac",),

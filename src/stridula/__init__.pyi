@@ -36,6 +36,7 @@ from .acoustics.wav import read_wav as read_wav
 from .acoustics.wav import write_wav as write_wav
 from .analysis import regime as regime
 from .analysis import worn as worn
+from .analysis.identification import identify_modes as identify_modes
 from .analysis.mobilities import mobility as mobility
 from .analysis.mode_effects import what_helps as what_helps
 from .analysis.record_card import RecordCard as RecordCard
@@ -144,6 +145,7 @@ from .scenarios import list_scenarios as list_scenarios
 from .scenarios import load_scenario as load_scenario
 from .scenarios import scenario_schema as scenario_schema
 from .scenarios import scenario_text as scenario_text
+from .signals import read_mobilities as read_mobilities
 from .signals import read_signal as read_signal
 from .signals import read_signals as read_signals
 from .signals import write_signal as write_signal

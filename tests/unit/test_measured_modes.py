@@ -135,6 +135,12 @@ def test_modes_are_read_back(tmp_path, scaling, imaginary):
         np.testing.assert_allclose(back.normalised, given.normalised, rtol=0.0, atol=1e-5 * scale)
 
 
+def test_an_end_without_a_dataset_hides_no_other(tmp_path):
+    lines = lines_of(tmp_path)
+    (tmp_path / "b.unv").write_text("\n".join(["    -1", *lines]) + "\n")
+    assert st.MeasuredModes.read(tmp_path / "b.unv").frequency.size == 3
+
+
 # Coordinate systems.
 
 

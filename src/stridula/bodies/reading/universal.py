@@ -87,4 +87,5 @@ def datasets(path: str | os.PathLike[str]) -> Iterator[Dataset]:
             return
         if end > at:
             yield Dataset(lines[at].strip(), at + 2, lines[at + 1 : end])
-        at = end + 1
+        # An end without a dataset before it would take the next beginning for its end.
+        at = end + 1 if end > at else at
