@@ -384,6 +384,16 @@ def test_bad_arguments_are_refused(changes, words):
         st.MeasuredModes(**given)
 
 
+def test_two_modes_of_the_same_frequency_are_mentioned():
+    shapes_of_two = np.random.default_rng(0).standard_normal((6, 2))
+    residue = (shapes_of_two @ shapes_of_two.T)[:, :2, None]
+    labels = [f"{point} {way}" for point in "ab" for way in ("+X", "+Y", "+Z")]
+    with pytest.warns(
+        DoubtfulValue, match=r"^the residue at 15\.9\d+ Hz is not one product .* a second mode of the same"
+    ):
+        st.MeasuredModes.from_residues([-1.0 + 100j], residue, labels, labels[:2])
+
+
 def test_residues_without_a_driving_point_have_no_scale():
     with pytest.raises(ValueError, match=r"^responses must have one of the excitations, 9 \+Z: without it the scale"):
         st.MeasuredModes.from_residues([-1.0 + 9j], np.ones((1, 1, 1)), ["1 +Z"], ["9 +Z"])

@@ -8,7 +8,10 @@ import numpy as np
 
 from ...arrays import Array
 from ...checks import ArgumentError, listed
+from ...doubtful import warn_of
 
+# Ratio of the second singular value of a residue to the first above which the product of two shapes is doubtful.
+LARGEST_SECOND = 0.2
 DIRECTIONS = {f"{sign}{axis}": (k, value) for k, axis in enumerate("XYZ") for sign, value in (("+", 1.0), ("-", -1.0))}
 
 
@@ -65,6 +68,10 @@ def shapes_of_residues(
     shapes = np.empty((len(responses), found.size), dtype=complex)
     for mode in range(found.size):
         left, size, right = np.linalg.svd(values[:, :, mode], full_matrices=False)
+        if size.size > 1 and size[1] > LARGEST_SECOND * size[0]:
+            at, share = abs(found[mode]) / (2.0 * np.pi), size[1] / size[0]
+            words = f"the residue at {at:.5g} Hz is not one product (singular values 1 to {share:.2g})"
+            warn_of([f"{words}: a second mode of the same frequency, or noise, is left out"])
         along = left[:, 0]
         both = along[np.array(rows)[kept]] * np.array(senses)[kept]
         product = size[0] * right[0][kept]
