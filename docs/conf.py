@@ -125,6 +125,8 @@ FIGURES = (
     "mode_sensitivity",
     "regime_map",
     "squeal_map",
+    "squeal_events",
+    "order_spectrum",
     "spectrogram",
     "spectrum",
     "waterfall",
