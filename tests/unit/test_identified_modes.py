@@ -157,6 +157,12 @@ def test_given_frequencies_begin_the_search():
         st.identify_modes(found, modes=frequency[:1])
     with pytest.raises(ValueError, match=r"^modes must be different frequencies from 40 to 1000 Hz"):
         st.identify_modes(found, modes=[20.0])
+    with pytest.raises(ValueError, match=r"^modes must be an array of numbers"):
+        st.identify_modes(found, modes="x")
+    with pytest.raises(ValueError, match=r"^band must be the lowest and the highest frequency \[Hz\], got 3"):
+        st.identify_modes(found, band=3)
+    with pytest.raises(ValueError, match=r"^places must have a place of each point, got none of '1'$"):
+        st.identify_modes(found, places={})
 
 
 @pytest.mark.parametrize(

@@ -339,6 +339,18 @@ def read_or_refused(path):
         return None, str(error)
 
 
+def test_a_mode_that_is_there_twice_is_refused(tmp_path):
+    """Two modes of one frequency with other shapes, as of a disc, are two."""
+    moved = shapes().real[:, :, [0, 0, 1]]
+    given = st.MeasuredModes([412.0, 412.0, 800.0], 0.01, moved * [1.0, -0.99, 1.0], ["3", "7", "12", "40"], 1.0)
+    given.write(tmp_path / "a.unv")
+    with pytest.raises(ValueError, match=r"a\.unv': line \d+: the mode at 412 Hz is there twice, also in line \d+$"):
+        st.MeasuredModes.read(tmp_path / "a.unv")
+    moved[:, :, 1] = shapes(9).real[:, :, 0]
+    st.MeasuredModes([412.0, 412.0, 800.0], 0.01, moved, ["3", "7", "12", "40"], 1.0).write(tmp_path / "a.unv")
+    assert st.MeasuredModes.read(tmp_path / "a.unv").frequency.size == 3
+
+
 def test_files_that_are_cut_or_shuffled_are_refused_or_equal(tmp_path):
     """A file without its end is refused, unless only whole modes are missing."""
     lines, rng = lines_of(tmp_path), np.random.default_rng(0)

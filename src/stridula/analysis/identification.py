@@ -10,7 +10,8 @@ import xarray as xr
 
 from ..arrays import Array
 from ..bodies import MeasuredModes
-from ..checks import ArgumentError, count, instance, listed, positive
+from ..bodies.matrix_input import numbers
+from ..checks import ArgumentError, count, instance, listed
 from ..doubtful import warn_of
 from .pole_fit import fitted_poles, residues_of
 from .pole_search import HIGHEST_DAMPING, stable_poles
@@ -160,10 +161,7 @@ def _check(poles: Array, frequency: Array) -> None:
 
 def _given(modes: Any, frequency: Array) -> Array:
     """Return frequencies of modes [Hz] as an array."""
-    try:
-        given = np.atleast_1d(np.asarray(modes, dtype=float))
-    except (TypeError, ValueError):
-        given = np.empty(0)
+    given = np.atleast_1d(numbers("modes", modes))
     inside = (given > frequency[0]) & (given < frequency[-1])
     if given.ndim != 1 or not given.size or not inside.all() or np.unique(given).size < given.size:
         words = f"be different frequencies from {frequency[0]:.5g} to {frequency[-1]:.5g} Hz"
@@ -183,8 +181,10 @@ def _checked(measured: Any, band: Any) -> tuple[Array, Array, tuple[str, ...], t
     if not np.isfinite(values).all() or not np.isfinite(frequency).all() or (np.diff(frequency) <= 0.0).any():
         raise ArgumentError("measured", "be finite, over rising frequencies", got="others")
     if band is not None:
-        low, high = (positive(f"band[{number}]", value) for number, value in enumerate(band))
-        kept = (frequency >= low) & (frequency <= high)
+        ends = numbers("band", band)
+        if ends.shape != (2,):
+            raise ArgumentError("band", "be the lowest and the highest frequency [Hz]", band)
+        kept = (frequency >= ends[0]) & (frequency <= ends[1])
         frequency, values = frequency[kept], values[..., kept]
     if frequency.size < 16 or frequency[0] <= 0.0 or not values.any():
         raise ArgumentError("measured", "have at least 16 frequencies above 0 Hz in the band", got=frequency.size)

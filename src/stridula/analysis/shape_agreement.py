@@ -99,10 +99,11 @@ def _computed(
     measured: MeasuredModes, computed: Any, points: Mapping[str, Any] | None, tolerance: float | None
 ) -> tuple[list[str], Array, tuple[Array, Array], float]:
     """Return names of points, computed shapes there, their frequencies with damping, and the largest distance [m]."""
-    if not hasattr(computed, "modes"):
+    if points is not None:
+        instance("points", points, Mapping)
+    if isinstance(computed, type) or not hasattr(computed, "check_position"):
         instance("computed", computed, MeasuredModes)
-        given = dict.fromkeys(measured.points) if points is None else points
-        at = {name: name if place is None else place for name, place in given.items()}
+        at = dict(zip(measured.points, measured.points, strict=True)) if points is None else points
         rows = [
             computed.points.index(choice(f"points[{name!r}]", place, computed.points)) for name, place in at.items()
         ]
@@ -121,7 +122,6 @@ def _computed(
 
 
 def _checked(measured: MeasuredModes, points: Mapping[str, Any]) -> list[str]:
-    instance("points", points, Mapping)
     if not points:
         raise ArgumentError("points", "name at least one measured point", points, got="none")
     return [choice("points", name, measured.points) for name in points]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -17,8 +18,10 @@ from ..reading.universal_nodes import Geometry
 from .universal_modes import FileMode, FileModes, read_universal_modes
 
 UNIT_MASS, UNIT_A = "unit modal mass", "unit modal A"
-# Relative difference between a given scale and that of a file that is due to rounding.
+# Relative difference between a given scale and that of a file, and of two frequencies, that is due to rounding.
 ROUNDING = 1e-4
+# Cosine of the angle of two shapes above which they are the same.
+ALIKE = 0.99
 
 
 def modes_of_file(
@@ -42,6 +45,7 @@ def modes_of_file(
     _warn(found, path)
     modes = sorted(found.modes, key=lambda mode: mode.frequency)
     length, force = found.geometry.units or (1.0, 1.0)
+    _check_once(modes, found.nodes, path)
     shapes, given = _scaled(modes, found.nodes, scaling, length / force, path)
     return {
         "frequency": [mode.frequency for mode in modes],
@@ -64,6 +68,17 @@ def _nodes(path: str | os.PathLike[str]) -> Geometry:
     if not found.numbers:
         raise ArgumentError("geometry", "have nodes, dataset 15 or 2411", str(path), got=f"none in {named(path)}")
     return found
+
+
+def _check_once(modes: list[FileMode], nodes: tuple[int, ...], path: str | os.PathLike[str]) -> None:
+    """Raise ValueError if a file has a mode twice, such as from two excitations: both would vibrate."""
+    for one, other in pairwise(modes):
+        if abs(one.frequency - other.frequency) <= ROUNDING * other.frequency:
+            first, second = (np.array([mode.shape.get(node, np.zeros(3)) for node in nodes]) for mode in (one, other))
+            sizes = np.linalg.norm(first) * np.linalg.norm(second)
+            if abs(np.vdot(first, second)) > ALIKE * sizes:
+                words = f"the mode at {other.frequency:.6g} Hz is there twice, also in line {one.line}"
+                raise ValueError(f"cannot read {named(path)}: line {other.line}: {words}")
 
 
 def _warn(found: FileModes, path: str | os.PathLike[str]) -> None:

@@ -187,10 +187,7 @@ class MeasuredModes:
         """
         poles, shapes = shapes_of_residues(poles, residues, tuple(responses), tuple(excitations))
         points, shapes = split(tuple(responses), shapes)
-        found = None if places is None else [places.get(name, (np.nan,) * 3) for name in points]
-        if found is not None and not np.isfinite(found).all():
-            lost = next(name for name, place in zip(points, found, strict=True) if not np.isfinite(place).all())
-            raise ArgumentError("places", "have a place of each point", got=f"none of {lost!r}")
+        found = None if places is None else _places(places, points)
         order = np.argsort(np.abs(poles), kind="stable")
         poles, shapes = poles[order], shapes[:, :, order]
         size = np.abs(poles)
@@ -332,6 +329,15 @@ def _shapes(value: Any, points: int, modes: int) -> Array:
     if still.size:
         raise ArgumentError("shapes", "move a point in every mode", got=f"none in mode {still[0]} (from 0)")
     return array
+
+
+def _places(places: Any, points: Sequence[str]) -> list[Array]:
+    """Return the places of points, which are given by name."""
+    instance("places", places, Mapping)
+    for name in points:
+        if name not in places:
+            raise ArgumentError("places", "have a place of each point", got=f"none of {name!r}")
+    return [_numbers(f"places[{name!r}]", places[name], (3,)) for name in points]
 
 
 def _scaling(value: Any, frequency: Array) -> Any:
