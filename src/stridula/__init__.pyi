@@ -36,10 +36,12 @@ from .acoustics.wav import read_wav as read_wav
 from .acoustics.wav import write_wav as write_wav
 from .analysis import regime as regime
 from .analysis import worn as worn
+from .analysis.identification import identify_modes as identify_modes
 from .analysis.mobilities import mobility as mobility
 from .analysis.mode_effects import what_helps as what_helps
 from .analysis.record_card import RecordCard as RecordCard
 from .analysis.record_card import card as card
+from .analysis.shape_agreement import mac as mac
 from .analysis.stability import sliding_stability as sliding_stability
 from .bars import show_progress as show_progress
 from .bodies import AxisymmetricBody as AxisymmetricBody
@@ -52,6 +54,7 @@ from .bodies import Line as Line
 from .bodies import LineProfile as LineProfile
 from .bodies import Material as Material
 from .bodies import MatrixFace as MatrixFace
+from .bodies import MeasuredModes as MeasuredModes
 from .bodies import MeshPart as MeshPart
 from .bodies import MeshProfile as MeshProfile
 from .bodies import ModalBeam as ModalBeam
@@ -143,6 +146,7 @@ from .scenarios import list_scenarios as list_scenarios
 from .scenarios import load_scenario as load_scenario
 from .scenarios import scenario_schema as scenario_schema
 from .scenarios import scenario_text as scenario_text
+from .signals import read_mobilities as read_mobilities
 from .signals import read_signal as read_signal
 from .signals import read_signals as read_signals
 from .signals import write_signal as write_signal

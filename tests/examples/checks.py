@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import stridula as st
 
@@ -32,10 +33,20 @@ def record(*names: str) -> None:
         st.save(run, name)
 
 
+def recordings() -> None:
+    """Write the recordings that pages assume."""
+    time = np.arange(int(25.6e3)) / 25.6e3
+    tone = 0.3 * np.sin(2.0 * np.pi * 2300.0 * time)
+    sound = xr.DataArray(tone, {"time": time}, ("time",), "microphone", {"units": "Pa"})
+    st.write_signal("stop.wav", sound, full_scale=2.0)
+    st.write_signal("rig.uff", sound)
+
+
 # Files assumed in the folder of a reader.
 GIVEN: dict[str, Callable[[], object]] = {
     "README.md": lambda: record("other.nc"),
     "command-line.rst": lambda: record("before.nc", "after.nc"),
+    "measured.rst": recordings,
     "mesh-files.rst": lambda: shutil.copy(ROOT / "examples" / "tutorials" / "brake.inp", "brake.inp"),
     "scenarios.rst": lambda: (
         record("squeal.nc"),

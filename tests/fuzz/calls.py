@@ -166,6 +166,17 @@ def _swept() -> xr.Dataset:
     return st.sweep("squeal", points, ["regime"], duration=0.005)
 
 
+def _measured() -> st.MeasuredModes:
+    return st.MeasuredModes([412.0], 0.004, [[[0.0], [0.0], [1.5]]], ["tip"], "unit modal mass", [[0.0, 0.0, 0.1]])
+
+
+def _mobilities() -> xr.DataArray:
+    frequency = np.arange(100.0, 800.0)
+    row = st.mobility(_measured().body().at("tip"), direction="z", frequency=frequency).values
+    names = {"response": ["tip +Z"], "excitation": ["tip +Z"], "frequency": frequency}
+    return xr.DataArray(row[None, None], names, ("response", "excitation", "frequency"))
+
+
 def _mass() -> st.PointMass:
     return st.PointMass(1.0)
 
@@ -242,6 +253,10 @@ THINGS: dict[str, Callable[[], Any]] = {
     "failing measure": lambda: {"mean": lambda run: 1 / 0},
     "target": lambda: {"regime": "squeal"},
     "points": lambda: {"tip": (0, 1)},
+    "measured modes": _measured,
+    "mobilities": _mobilities,
+    "mac": lambda: st.mac(_measured(), _measured()),
+    "events": lambda: st.squeal_events(_sound().isel(listener=0)),
     "watchers": lambda: [watcher()],
     "path": lambda: Path("file.txt"),
     "folder": lambda: Path("."),
@@ -292,6 +307,9 @@ FITTING: dict[str, tuple[tuple[str, Any], ...]] = {
     **dict.fromkeys(
         ("overrides", "ranges", "uncertain", "distributions"), _plain({"coefficient": (0.5, 1.0)}, {"coefficient": 1.0})
     ),
+    "measured": _things("measured modes", "mobilities"),
+    "computed": _things("measured modes", "slider", "mass", "plate"),
+    "scaling": _plain("unit modal mass", "unit modal A", 2.0),
     "system": _SYSTEMS,
     "systems": _things("systems"),
     "material": _things("material"),
@@ -324,7 +342,7 @@ FITTING: dict[str, tuple[tuple[str, Any], ...]] = {
     "status": _STATUS,
     "limits": _things("thresholds"),
     "figure": _things("figure"),
-    "found": _things("swept", "effects", "probability"),
+    "found": _things("swept", "effects", "probability", "mac", "events", "mobilities"),
     "parameters": _plain(["coefficient"], ["friction"], ["slider.material.young"]),
     "masses": _plain({"tip": ("slider", "tip")}),
     "loci": _things("loci"),

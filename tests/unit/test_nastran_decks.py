@@ -8,8 +8,8 @@ from math import atan2, degrees, hypot
 import numpy as np
 import pytest
 
-from stridula.bodies.decks.deck import DeckError
 from stridula.bodies.decks.nastran import read_nastran
+from stridula.bodies.reading.deck_error import DeckError
 
 BLANK_CONTINUATION = """\
 $ the continuation of CHEXA has a blank first field, which Nastran accepts

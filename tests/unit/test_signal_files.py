@@ -130,6 +130,15 @@ def test_what_pyuff_writes_is_read(tmp_path, count, even, binary, double):
     np.testing.assert_allclose(back.time, times, atol=1e-9)
 
 
+def test_no_binary_dataset_is_lost_among_several(tmp_path):
+    for node in range(1, 6):
+        by_pyuff(tmp_path / "a.uff", noise(seed=node), np.arange(500) / 1e3, even=1, binary=1, rsp_node=node)
+    back = st.read_signals(tmp_path / "a.uff")
+    assert list(back) == [f"{node} -Z" for node in range(1, 6)]
+    for node, one in enumerate(back.values(), 1):
+        np.testing.assert_array_equal(one, noise(seed=node))
+
+
 def test_pyuff_reads_what_is_written(tmp_path):
     pyuff = pytest.importorskip("pyuff")
     st.write_signal(tmp_path / "a.uff", signal(noise(), start=0.5))

@@ -7,6 +7,7 @@ from .damping import Rayleigh, RisingDamping, SampledDamping
 from .masses.point_mass import PointMass
 from .masses.rigid_body import RigidBody
 from .matrices.faces import MatrixFace
+from .matrices.measured_modes import MeasuredModes
 from .matrices.modal_body import ModalBody
 from .matrices.reduced_body import ReducedBody
 from .modes import Body, Modes
@@ -33,6 +34,7 @@ __all__ = [
     "LineProfile",
     "Material",
     "MatrixFace",
+    "MeasuredModes",
     "MeshPart",
     "MeshProfile",
     "ModalBeam",

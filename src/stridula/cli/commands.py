@@ -517,6 +517,30 @@ def mesh(
 
 
 @app.command()
+def signal(
+    files: Annotated[list[str], typer.Argument(metavar="FILE...", help="Recordings: sounds, tables, universal files.")],
+    channel: Annotated[str | None, typer.Option(metavar="NAME", help="Read only this channel.")] = None,
+    calibration: Annotated[
+        str | None, typer.Option(metavar="X", help="Value of a sample of 1, of full scale for sounds; needs --units.")
+    ] = None,
+    units: Annotated[str | None, typer.Option(metavar="UNIT", help="Units of the channel, such as Pa or m/s2.")] = None,
+    sample_rate: Annotated[
+        str | None, typer.Option(metavar="HZ", help="Sample rate of files that do not state it.")
+    ] = None,
+    lowest: Annotated[
+        str | None, typer.Option(metavar="HZ", help="Lowest frequency of squeals; default: 1.25 kHz.")
+    ] = None,
+    out: Annotated[str | None, typer.Option(metavar="FILE.csv", help="Write the squeals, a row for each.")] = None,
+    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the squeals, level over frequency.")] = None,
+) -> None:
+    """Print what recordings are: channels, levels, tones, regime and squeals."""
+    from .recordings import print_signals
+
+    options = {"--calibration": calibration, "--units": units, "--sample-rate": sample_rate, "--lowest": lowest}
+    print_signals(files, channel, options, out, plot)
+
+
+@app.command()
 def export(
     record: Record,
     out: Annotated[str, typer.Option(metavar="FILE", help="Table to write: .csv or .mat.")],

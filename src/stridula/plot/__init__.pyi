@@ -18,12 +18,15 @@ from .maps import regime_map as regime_map
 from .mesh_drawings import meshes as meshes
 from .mobilities import mobility as mobility
 from .mode_films import animate_mode as animate_mode
+from .order_spectra import order_spectrum as order_spectrum
 from .probabilities import mode_probability as mode_probability
 from .reels import Film as Film
+from .shape_agreements import mac as mac
 from .shapes_of_modes import mode_shapes as mode_shapes
 from .space_films import bodies as bodies
 from .spectra import spectrum as spectrum
 from .spectrograms import spectrogram as spectrogram
+from .squeal_levels import squeal_events as squeal_events
 from .squeals import squeal_map as squeal_map
 from .surfaces import animate_surface as animate_surface
 from .surfaces import surface as surface

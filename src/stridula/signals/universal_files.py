@@ -1,4 +1,4 @@
-"""Time responses in universal files: dataset 58, as text or binary."""
+"""Functions in universal files, of which time responses are signals: dataset 58, as text or binary."""
 
 from __future__ import annotations
 
@@ -111,36 +111,108 @@ def read_universal_signals(path: Path) -> list[Channel]:
     ValueError
         If it has none, or a line cannot be read; the message has file and line.
     """
+    functions, factors, others = _read(path, only_signals=True)
+    signals = [_response(str(path), one) for one in functions]
+    if not signals:
+        got = ", ".join(dict.fromkeys(others)) or "no dataset"
+        raise ArgumentError("path", "have a time response, dataset 58", str(path), got=f"{got} in {str(path)!r}")
+    return _named(signals, factors)
+
+
+def read_functions(path: Path) -> tuple[list[Function], tuple[float, float] | None]:
+    """Return all functions of a universal file, and its length and force per metre and per newton.
+
+    Raises
+    ------
+    ValueError
+        If a line cannot be read; the message has file and line.
+    """
+    functions, factors, _ = _read(path, only_signals=False)
+    return functions, factors
+
+
+def _read(path: Path, *, only_signals: bool) -> tuple[list[Function], tuple[float, float] | None, list[str]]:
+    """Return functions, factors of units, and the kinds of what is left out."""
     lines = _Lines(str(path), read(path))
-    functions: list[_Function] = []
+    functions: list[Function] = []
     others: list[str] = []
     factors: tuple[float, float] | None = None
     while not lines.is_done:
         if lines.line().strip() != END:
             continue
-        if lines.is_done:
+        # An end without a dataset before it would take the next beginning for its end.
+        head = END
+        while not lines.is_done and head.strip() == END:
+            head = lines.line()
+        if head.strip() == END:
             break
-        head = lines.line()
         kind = head[:6].strip().decode("latin-1")
         if kind == FUNCTIONS:
-            found = _function(lines, head)
+            found = _function(lines, head, only_signals)
             if isinstance(found, str):
                 others.append(found)
             else:
                 functions.append(found)
         elif kind == UNITS:
-            factors = _factors(lines)
+            given = _factors(lines)
+            if factors is not None and not np.allclose(given, factors, rtol=1e-6, atol=0.0):
+                raise lines.wrong(f"units must not be mixed, got factors of {given} after {factors} in dataset 164")
+            factors = given
         else:
             others.append(f"dataset {kind}")
             _skip(lines)
-    if not functions:
-        got = ", ".join(dict.fromkeys(others)) or "no dataset"
-        raise ArgumentError("path", "have a time response, dataset 58", str(path), got=f"{got} in {str(path)!r}")
-    return _named(functions, factors)
+    return functions, factors, others
 
 
 @dataclass(frozen=True)
-class _Function:
+class Function:
+    """A function of dataset 58.
+
+    Attributes
+    ----------
+    line : int
+        Number of the line at which its values begin.
+    title : str
+        Its first line.
+    kind : int
+        Type of the function.
+    place, reference : str
+        Nodes with directions of the response and of the excitation, ``7 +Z``.
+    data, over : int
+        Types of the data of the response, and of that by which it is divided.
+    label : str
+        Label of the ordinate.
+    units, over_units : str
+        Units of both, `UNKNOWN` where the file does not state them.
+    abscissa_units : str
+        Units of the abscissa, or NONE.
+    values : ndarray, shape (samples,)
+        Real or complex.
+    abscissa : ndarray, shape (samples,)
+        In units of the file.
+    start, interval : float
+        Of an even abscissa; the interval is 0 for others.
+    """
+
+    line: int
+    title: str
+    kind: int
+    place: str
+    reference: str
+    data: int
+    over: int
+    label: str
+    units: str
+    over_units: str
+    abscissa_units: str
+    values: Array
+    abscissa: Array
+    start: float
+    interval: float
+
+
+@dataclass(frozen=True)
+class _Response:
     """A time response: its identification, its place, type, label and units of its ordinate, and its samples."""
 
     title: str
@@ -153,7 +225,7 @@ class _Function:
     rate: float
 
 
-def _named(functions: list[_Function], factors: tuple[float, float] | None) -> list[Channel]:
+def _named(functions: list[_Response], factors: tuple[float, float] | None) -> list[Channel]:
     """Return time responses as channels, named by their titles if these differ, else by their places."""
     titles = [one.title for one in functions]
     by_title = all(title != NONE for title in titles) and len(set(titles)) == len(titles)
@@ -186,8 +258,8 @@ def _skip(lines: _Lines) -> None:
         pass
 
 
-def _function(lines: _Lines, head: bytes) -> _Function | str:
-    """Return the time response that follows, or the kind of another function in words."""
+def _function(lines: _Lines, head: bytes, only_signals: bool) -> Function | str:
+    """Return the function that follows, or the kind of one that is left out in words."""
     is_binary = head[6:7].lower() == b"b"
     order, count_of_lines, size = 1, HEADER, 0
     if is_binary:
@@ -199,44 +271,83 @@ def _function(lines: _Lines, head: bytes) -> _Function | str:
     for _ in range(4):
         lines.line()
     line = lines.line()
-    kind, node, direction = lines.numbers(line, (5, 10, 5, 10, 11, 10, 4), "i----ii")
-    entity = _word(line[30:41])
-    place = f"{'' if entity == NONE else entity + ' '}{int(node)}{DIRECTIONS.get(int(direction), '')}"
+    kind, node, way, other, other_way = lines.numbers(line, (5, 10, 5, 10, 11, 10, 4, 11, 10, 4), "i----ii-ii")
+    place, reference = (_place(line[at : at + 11], *ends) for at, ends in ((30, (node, way)), (55, (other, other_way))))
     form, number, spacing, start, interval = lines.numbers(lines.line(), (10, 10, 10, 13, 13), "iiiee")
     if int(form) not in FORMS or number < 0:
         raise lines.wrong(f"the type of data must be 2, 4, 5 or 6 and its number 0 or more, got {form} and {number}")
     abscissa, along = _axis(lines)
-    at_axis = lines.number
     ordinate, across = _axis(lines)
-    lines.line()
+    over, below = _axis(lines)
     lines.line()
     is_double, is_complex = FORMS[int(form)]
-    if kind not in (GENERAL, RESPONSE) or (kind == GENERAL and abscissa != TIME):
+    is_signal = kind == RESPONSE or (kind == GENERAL and abscissa == TIME)
+    if only_signals and not is_signal:
         if is_binary:
             lines.taken(size)
         _skip(lines)
         return KINDS.get(int(kind), f"function of type {int(kind)}")
-    if is_complex:
+    if is_signal and is_complex:
         raise lines.wrong("a time response must be real, got complex numbers")
-    first, count = lines.number + 1, int(number) * (1 if spacing else 2)
-    values = _binary(lines, size, order, is_double, count) if is_binary else _text(lines, is_double, spacing, count)
-    scale = 1.0 if along[1] == NONE else seconds(along[1])
+    parts = 2 if is_complex else 1
+    first, count = lines.number + 1, int(number) * (parts if spacing else parts + 1)
+    values = (
+        _binary(lines, size, order, (is_double, is_complex), count)
+        if is_binary
+        else _text(lines, _widths(is_double, is_complex, bool(spacing)), count)
+    )
+    if spacing and not interval > 0.0:
+        words = f"the interval of {'times' if is_signal else 'the abscissa'} must be above 0, got {interval}"
+        raise ValueError(f"{lines.path}, line {first - 5}: {words}")
+    rows = values.reshape(int(number), -1)
+    even = start + interval * np.arange(int(number))
+    return Function(
+        line=first,
+        title=title,
+        kind=int(kind),
+        place=place,
+        reference=reference,
+        data=int(ordinate),
+        over=int(over),
+        label=across[0],
+        units=_units(across[1]),
+        over_units=_units(below[1]),
+        abscissa_units=along[1],
+        values=rows[:, -2] + 1j * rows[:, -1] if is_complex else rows[:, -1].copy(),
+        abscissa=even if spacing else rows[:, 0].copy(),
+        start=start,
+        interval=interval if spacing else 0.0,
+    )
+
+
+def _place(entity: bytes, node: float, direction: float) -> str:
+    """Return a node with its direction in words, after the name of its entity, if it has one."""
+    word = _word(entity)
+    return f"{'' if word == NONE else word + ' '}{int(node)}{DIRECTIONS.get(int(direction), '')}"
+
+
+def _units(word: str) -> str:
+    return UNKNOWN if word == NONE else plain_units(word)
+
+
+def _response(path: str, one: Function) -> _Response:
+    """Return a function over time as samples at a rate."""
+    scale = 1.0 if one.abscissa_units == NONE else seconds(one.abscissa_units)
     if scale is None:
-        raise ValueError(f"{lines.path}, line {at_axis}: times must have a unit of time, got {along[1]!r}")
-    if number < 2:
-        raise ValueError(f"{lines.path}, line {first}: a time response must have at least 2 samples, got {number:g}")
-    units = UNKNOWN if across[1] == NONE else plain_units(across[1])
-    if spacing:
-        if not interval > 0.0:
-            raise ValueError(f"{lines.path}, line {at_axis - 1}: the interval of times must be above 0, got {interval}")
-        rate = round_rate(1.0 / (interval * scale), 0.5 * SIX_DIGITS)
-        return _Function(title, place, int(ordinate), across[0], units, values, start * scale, rate)
-    times = values[::2] * scale
-    try:
-        start, rate = grid(times, _six_digits(times, scale))
-    except Uneven as error:
-        raise ValueError(f"{lines.path}, dataset that begins at line {first}: {error.words}") from None
-    return _Function(title, place, int(ordinate), across[0], units, values[1::2].copy(), start, rate)
+        at_axis = one.line - 4
+        raise ValueError(f"{path}, line {at_axis}: times must have a unit of time, got {one.abscissa_units!r}")
+    count = one.values.size
+    if count < 2:
+        raise ValueError(f"{path}, line {one.line}: a time response must have at least 2 samples, got {count}")
+    if one.interval:
+        start, rate = one.start * scale, round_rate(1.0 / (one.interval * scale), 0.5 * SIX_DIGITS)
+    else:
+        times = one.abscissa * scale
+        try:
+            start, rate = grid(times, _six_digits(times, scale))
+        except Uneven as error:
+            raise ValueError(f"{path}, dataset that begins at line {one.line}: {error.words}") from None
+    return _Response(one.title, one.place, one.data, one.label, one.units, one.values, start, rate)
 
 
 def _six_digits(times: Array, scale: float) -> Array:
@@ -261,25 +372,34 @@ def _word(text: bytes) -> str:
     return NONE if not found or found.upper() == NONE else found
 
 
-def _binary(lines: _Lines, size: int, order: int, is_double: bool, count: int) -> Array:
+def _binary(lines: _Lines, size: int, order: int, form: tuple[bool, bool], count: int) -> Array:
+    is_double, is_complex = form
     kind = np.dtype(f"{'<' if order == 1 else '>'}f{8 if is_double else 4}")
+    # pyuff counts the bytes of complex numbers as if they were real; the end of the dataset shows which are meant.
+    size = 2 * size if is_complex and 2 * size == count * kind.itemsize else size
     if size != count * kind.itemsize:
         raise lines.wrong(f"{count} numbers must have {count * kind.itemsize} bytes, got {size}")
     values = np.frombuffer(lines.taken(size), kind).astype(float)
     wrong = np.flatnonzero(~np.isfinite(values))
     if wrong.size:
         raise lines.wrong(f"samples must be finite, got {values[wrong[0]]} at place {wrong[0]} (from 0)")
-    # The line of the end may follow at once.
-    if not lines.is_done and lines.line().strip() not in (END, b""):
+    # The line of the end may follow at once, or after an empty one.
+    if (lines.line().strip() or lines.line().strip()) != END:
         raise lines.wrong("the dataset must end with -1 after its numbers")
     return values
 
 
-def _text(lines: _Lines, is_double: bool, spacing: float, count: int) -> Array:
+def _widths(is_double: bool, is_complex: bool, is_even: bool) -> tuple[int, ...]:
+    """Return the widths of the fields of a line; lines of uneven double numbers are those of whole samples."""
+    if not is_double:
+        return (13,) * 6
+    if is_even:
+        return (20,) * 4
+    return (13, 20, 20) if is_complex else (13, 20, 13, 20)
+
+
+def _text(lines: _Lines, widths: tuple[int, ...], count: int) -> Array:
     """Return the numbers up to the end of the dataset, separated by blanks or in fields of fixed width."""
-    widths: tuple[int, ...] = (13,) * 6
-    if is_double:
-        widths = (20,) * 4 if spacing else (13, 20, 13, 20)
     body: list[bytes] = []
     while (line := lines.line()).strip() != END:
         body.append(line)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...disk import opened
-from .deck import DeckError
+from ..reading.deck_error import DeckError
 
 # Deepest chain of includes.
 DEEPEST = 20

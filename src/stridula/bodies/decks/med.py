@@ -12,7 +12,8 @@ from ...arrays import Array
 from ...checks import in_one_line
 from ...disk import opened
 from ...extras import named_extras
-from .deck import CORNERS, Block, Deck, DeckError
+from ..reading.deck_error import DeckError
+from .deck import CORNERS, Block, Deck
 from .mirrored import right_handed
 
 SOLIDS = {

@@ -11,7 +11,8 @@ import numpy as np
 
 from ...arrays import Array
 from ...disk import opened
-from .deck import CORNERS, Block, Deck, DeckError
+from ..reading.deck_error import DeckError
+from .deck import CORNERS, Block, Deck
 from .mirrored import right_handed
 
 SOLIDS = {

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...disk import is_there, named, opened
+from ..reading.deck_error import DeckError
 from ..reading.nastran_fields import real
 from ..reading.text import text_of
-from .deck import DeckError
 
 SMALL = [(at, at + 8) for at in range(8, 72, 8)]
 LARGE = [(at, at + 16) for at in range(8, 72, 16)]

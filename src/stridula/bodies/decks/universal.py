@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...arrays import Array
-from ...disk import opened
-from .deck import Block, Deck, DeckError
+from ..reading.deck_error import DeckError
+from ..reading.universal import Dataset, datasets
+from .deck import Block, Deck
 from .mirrored import right_handed
 
 # Solid elements by the number of their type: kind, and places in the file of all nodes in the order of VTK. Corners and
@@ -66,59 +67,10 @@ def read_universal(path: str | os.PathLike[str]) -> Deck:
     OSError
         If the file cannot be read.
     """
-    with opened(path) as file:
-        lines = file.read().decode("latin-1").replace("\r\n", "\n").split("\n")
     model = _Model()
-    at = 0
-    while at < len(lines):
-        at += 1
-        if lines[at - 1].strip() != "-1":
-            continue
-        end = next((k for k in range(at, len(lines)) if lines[k].strip() == "-1"), None)
-        if end is None:
-            if any(line.strip() for line in lines[at:]):
-                raise DeckError(at, "the dataset that begins here has no end, a line of -1: the file is cut off")
-            break
-        if end > at:
-            model.read(_Dataset(lines[at].strip(), at + 2, lines[at + 1 : end]))
-        at = end + 1
+    for one in datasets(path):
+        model.read(one)
     return model.deck()
-
-
-@dataclass(frozen=True)
-class _Dataset:
-    """A dataset: its number as text, the number of its first line, and its lines."""
-
-    name: str
-    first: int
-    lines: list[str]
-
-    def wrong(self, at: int, words: str) -> DeckError:
-        """Return the error that a line cannot be read."""
-        return DeckError(self.first + at, f"dataset {self.name} {words}")
-
-    def whole(self, at: int, least: int = 0) -> list[int]:
-        """Return the whole numbers of a line."""
-        words = self.lines[at].split() if at < len(self.lines) else []
-        try:
-            found = list(map(int, words))
-        except ValueError:
-            raise self.wrong(at, f"needs whole numbers, got {self.lines[at].strip()[:60]!r}") from None
-        if len(found) < least:
-            raise self.wrong(at, f"needs {least} whole numbers in a line, got {len(found)}")
-        return found
-
-    def numbers(self, at: int, count: int) -> list[float]:
-        """Return the numbers of a line."""
-        words = self.lines[at].upper().replace("D", "E").split() if at < len(self.lines) else []
-        try:
-            found = list(map(float, words))
-        except ValueError:
-            found = []
-        if len(found) < count or not np.isfinite(found).all():
-            got = self.lines[at].strip()[:60] if at < len(self.lines) else "none"
-            raise self.wrong(at, f"needs {count} numbers in a line, got {got!r}")
-        return found[:count]
 
 
 @dataclass
@@ -142,9 +94,9 @@ class _Model:
     groups: list[tuple[str, list[int], list[int]]] = field(default_factory=list)
     left_out: Counter[str] = field(default_factory=Counter)
 
-    def read(self, one: _Dataset) -> None:
+    def read(self, one: Dataset) -> None:
         """Read a dataset."""
-        readers: dict[str, Callable[[_Dataset], None]] = {
+        readers: dict[str, Callable[[Dataset], None]] = {
             "15": self._read_short_nodes,
             "18": self._read_other_systems,
             **dict.fromkeys(("781", "2411"), self._read_nodes),
@@ -159,7 +111,7 @@ class _Model:
         elif name not in WITHOUT_MESH:
             self.left_out[f"dataset {name[:20]}"] += 1
 
-    def _read_units(self, one: _Dataset) -> None:
+    def _read_units(self, one: Dataset) -> None:
         """Mention another unit of length than the metre: values in it are divided by the factor given."""
         factor = one.numbers(1, 1)[0]
         if factor > 0.0 and abs(factor - 1.0) > ROUNDING:
@@ -218,33 +170,33 @@ class _Model:
                 raise DeckError(line, f"element {label} has node {lost[0]}, which is not in the file")
         return np.array([[index[one] for one in nodes] for nodes in those.nodes], dtype=np.int64)
 
-    def _put(self, one: _Dataset, at: int, header: list[int], place: list[float]) -> None:
+    def _put(self, one: Dataset, at: int, header: list[int], place: list[float]) -> None:
         """Add a node."""
         if self.nodes.setdefault(header[0], tuple(place)) != tuple(place):
             raise one.wrong(at, f"gives node {header[0]} twice, at different places")
         self.system_of[header[0]] = header[1]
 
-    def _read_nodes(self, one: _Dataset) -> None:
+    def _read_nodes(self, one: Dataset) -> None:
         for at in range(0, len(one.lines), 2):
             self._put(one, at, one.whole(at, 2), one.numbers(at + 1, 3))
 
-    def _read_short_nodes(self, one: _Dataset) -> None:
+    def _read_short_nodes(self, one: Dataset) -> None:
         for at in range(len(one.lines)):
             label, system, _, _, *place = one.numbers(at, 7)
             self._put(one, at, [int(label), int(system)], place)
 
-    def _read_systems(self, one: _Dataset) -> None:
+    def _read_systems(self, one: Dataset) -> None:
         for at in range(2, len(one.lines), 6):
             label, form, *_ = one.whole(at, 2)
             given = np.array([one.numbers(at + 2 + row, 3) for row in range(4)])
             if form != 0 or not np.allclose(given, np.eye(4)[:, :3], atol=1e-12):
                 self.other_systems[label] = one.first + at
 
-    def _read_other_systems(self, one: _Dataset) -> None:
+    def _read_other_systems(self, one: Dataset) -> None:
         for at in range(0, len(one.lines), 4):
             self.other_systems[one.whole(at, 1)[0]] = one.first + at
 
-    def _read_elements(self, one: _Dataset) -> None:
+    def _read_elements(self, one: Dataset) -> None:
         at = 0
         while at < len(one.lines):
             start, header = at, one.whole(at, 6)
@@ -269,7 +221,7 @@ class _Model:
             else:
                 self.left_out[f"elements of type {of}"] += 1
 
-    def _read_groups(self, one: _Dataset) -> None:
+    def _read_groups(self, one: Dataset) -> None:
         width = 4 if int(one.name) in WIDE_GROUPS else 2
         at = 0
         while at < len(one.lines):

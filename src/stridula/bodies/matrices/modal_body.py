@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -116,6 +117,52 @@ class ModalBody(NamedPoints):
         name = f", name={self.name!r}" if self.name else ""
         modes = counted(len(self.angular_frequency), "mode")
         return f"ModalBody({modes}{residual}, points {listed(self.points)}{name})"
+
+    @classmethod
+    def read(
+        cls,
+        path: str | os.PathLike[str],
+        scaling: Any = None,
+        *,
+        points: Mapping[str, str] | None = None,
+        name: str = "",
+        geometry: str | os.PathLike[str] | None = None,
+        quantity: str | None = None,
+        directions: str | None = None,
+    ) -> ModalBody:
+        """Read the modes of a modal test from a universal file.
+
+        Short for ``MeasuredModes.read(path, scaling, ...).body(points, name)``, which has the details.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file, with mode shapes in dataset 55.
+        scaling : {"unit modal mass", "unit modal A"}, float or array_like, optional
+            Scale of the shapes, or modal masses [kg], in place of those of the file.
+        points : mapping, optional
+            Numbers of nodes as text by the names of the points, ``{"tip": "7"}``; all nodes by their numbers if left
+            out.
+        name : str, optional
+            Name in records.
+        geometry : str or Path, optional
+            A universal file with the nodes, if they are not in the same file.
+        quantity : {"displacement"}, optional
+            Confirms that shapes that the file calls velocities or accelerations have the scale of displacements.
+        directions : {"global", "local"}, optional
+            Directions of shapes at nodes with a displacement coordinate system of their own; needed there.
+
+        Raises
+        ------
+        ValueError
+            If a line cannot be read, the scale is not known, or a point is not measured.
+        OSError
+            If the file cannot be read.
+        """
+        from .measured_modes import MeasuredModes
+
+        words: dict[str, Any] = {"geometry": geometry, "quantity": quantity, "directions": directions}
+        return MeasuredModes.read(path, scaling, **words).body(points, name)
 
     @classmethod
     def placed(

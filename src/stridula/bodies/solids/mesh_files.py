@@ -19,11 +19,12 @@ from ...disk import named, one_line, opened
 from ...doubtful import LeftOut, warn_of
 from ...extras import named_extras
 from ..decks.abaqus import read_abaqus
-from ..decks.deck import Deck, DeckError, Elastic, Lump
+from ..decks.deck import Deck, Elastic, Lump
 from ..decks.med import read_med
 from ..decks.medit import read_medit
 from ..decks.nastran import read_nastran
 from ..decks.universal import read_universal
+from ..reading.deck_error import DeckError
 from .cut_elements import can_be_cut, cut_into_tetrahedra, triangles_of
 from .file_content import SOLID, Cells, Held, OfBlocks
 from .file_parts import called, components, named_part, only, with_materials
