@@ -16,13 +16,13 @@ REST = 10.0
 
 
 class Beside:
-    """The process that computes maps and linear theory for all pages in turn, while any page is open or may return."""
+    """Two processes that compute for all pages: one the present motion, the other linear theory and maps.
+
+    Rows of maps take seconds, the first one longer, and the present motion is reported every second.
+    """
 
     def __init__(self) -> None:
-        self._process: asyncio.subprocess.Process | None = None
-        self._turn = asyncio.Lock()
-        self._closed = 0
-        self._rest: asyncio.TimerHandle | None = None
+        self._quick, self._slow = InTurn(), InTurn()
 
     async def ask(self, what: str, **words: Any) -> Any:
         """Return the answer to a question, asked in turn, or None if the last page closes meanwhile.
@@ -34,6 +34,30 @@ class Beside:
         **words
             Arguments of the function of that name in `beside_worker.ANSWERS`.
         """
+        return await (self._quick if what == "now" else self._slow).ask(what, **words)
+
+    def close(self) -> None:
+        """Forget all questions, as no page is open: kill a process that computes, one that rests a little later."""
+        self._quick.close()
+        self._slow.close()
+
+    async def end(self) -> None:
+        """Kill the processes and wait for their ends."""
+        await self._quick.end()
+        await self._slow.end()
+
+
+class InTurn:
+    """A process that answers questions in turn, while any page is open or may return."""
+
+    def __init__(self) -> None:
+        self._process: asyncio.subprocess.Process | None = None
+        self._turn = asyncio.Lock()
+        self._closed = 0
+        self._rest: asyncio.TimerHandle | None = None
+
+    async def ask(self, what: str, **words: Any) -> Any:
+        """Return the answer to a question as `Beside.ask` does."""
         # A cancelled question ends here; otherwise it would start the process.
         await self._turn.acquire()
         # Once started, it is computed to its end, so that answers keep their order.

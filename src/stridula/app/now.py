@@ -1,4 +1,4 @@
-"""The present motion as text: the regime of the last second, its pitch and its level."""
+"""The present motion as text: the regime of the last moments, its pitch and its level."""
 
 from __future__ import annotations
 
@@ -12,8 +12,40 @@ import numpy as np
 from ..acoustics.levels import REFERENCE, decibels
 from ..arrays import Array
 
-# Frequency above which a tone is described as a squeal [Hz].
-SHRILL = 1000.0
+# Shortest and longest time that decides a regime [s], and number of periods in it.
+MOMENT, LONGEST, PERIODS = 1.0, 10.0, 3.0
+
+
+class Headline:
+    """The motion that is named, judged over a second, or over longer if it is slower or not the same each second.
+
+    A regime is named as soon as it is found after a change, later once it is found twice in succession.
+    """
+
+    def __init__(self) -> None:
+        self._begin(-1)
+
+    def _begin(self, revision: int) -> None:
+        self.window = MOMENT
+        self._revision, self._last, self._named = revision, "", {}
+
+    def seconds(self, steady: float) -> float:
+        """Return the time to judge [s], for a setting that has not changed for a time [s]."""
+        return min(self.window, max(MOMENT, steady))
+
+    def after(self, found: dict[str, Any], revision: int) -> dict[str, Any]:
+        """Return the motion to name, one that `measured` returned, after another was found at a revision."""
+        if revision != self._revision:
+            self._begin(revision)
+        is_same = found["regime"] == self._last
+        if is_same or not self._last:
+            self._named = found
+        else:
+            self.window = min(LONGEST, 2.0 * self.window)
+        if found["frequency"]:
+            self.window = min(LONGEST, max(MOMENT, PERIODS / found["frequency"]))
+        self._last = found["regime"]
+        return self._named
 
 
 def said(values: Array) -> dict[str, Any]:
@@ -28,7 +60,7 @@ def heard(told: dict[str, Any]) -> Array:
 
 
 def measured(interval: float, contacts: Sequence[str], variables: dict[str, Any]) -> dict[str, Any]:
-    """Return the regime of the last second and its measures.
+    """Return the regime of a record and its measures.
 
     Parameters
     ----------
@@ -77,12 +109,18 @@ def level_of(pressure: Array) -> float | None:
 def _verb(regime: str, frequency: float | None, impacts: float | None) -> str:
     pitch = "" if frequency is None else f" at {_pitch(frequency)}"
     if regime == "squeal":
-        return f"{'squeals' if frequency is None or frequency >= SHRILL else 'sounds'}{pitch}"
+        return f"squeals{pitch}"
     if regime == "stick-slip":
-        return "sticks and slips" + ("" if frequency is None else f" {frequency:.3g} times a second")
+        return f"sticks and slips{_often(frequency)}"
     if regime == "judder":
         return "judders" + ("" if not impacts else f", {impacts:.3g} landings a second")
     return {"stable sliding": "slides steadily", "sticking": "sticks", "off the track": "has lifted off"}[regime]
+
+
+def _often(frequency: float | None) -> str:
+    if frequency is None:
+        return ""
+    return f" {frequency:.3g} times a second" if frequency >= 1.0 else f", once in {1.0 / frequency:.2g} s"
 
 
 def _pitch(frequency: float) -> str:

@@ -55,14 +55,15 @@ export class Controls {
       if (number.value.trim() === "" || !Number.isFinite(Number(number.value))) this.show(this.values, true);
       else this.scene.values({ [control.key]: si(Number(number.value), control) });
     });
-    this.rows.set(control.key, { row, control, show: (value, again) => this.#show(value, slide, number, control, again) });
+    const show = (value, again, ends) => this.#show(value, slide, number, control, again, ends);
+    this.rows.set(control.key, { row, control, show });
     return row;
   }
 
-  #show(value, slide, number, control, again) {
+  #show(value, slide, number, control, again, [low, high]) {
     const shown = Number((value / control.scale).toPrecision(7));
-    slide.min = Math.min(control.low, shown);
-    slide.max = Math.max(control.high, shown);
+    slide.min = Math.min(low, shown);
+    slide.max = Math.max(high, shown);
     if (again || document.activeElement !== slide || Math.abs(Number(slide.value) - shown) > control.step) slide.value = shown;
     if (again || document.activeElement !== number) number.value = shown;
     slide.setAttribute("aria-valuetext", `${shown} ${spoken(control.unit)}`.trim());
@@ -87,23 +88,29 @@ export class Controls {
     return row;
   }
 
-  // Show the played values, given in SI.
-  show(values, again = false) {
+  // Show the played values, and the ends of sliders that they bound, given in SI.
+  show(values, again = false, bounds = this.bounds) {
     const before = this.values ?? {};
-    this.values = values;
-    for (const [key, { row, show }] of this.rows) {
+    const moved = JSON.stringify(bounds) !== JSON.stringify(this.bounds);
+    Object.assign(this, { values, bounds });
+    for (const [key, { row, show, control }] of this.rows) {
       row.hidden = !(key in values);
-      if (key in values && (again || values[key] !== before[key])) show(values[key], again);
+      if (key in values && (again || moved || values[key] !== before[key])) show(values[key], again, control && this.ends(control));
     }
+  }
+
+  // The ends of a slider, in the unit shown.
+  ends({ key, low, high, scale }) {
+    return this.bounds?.[key]?.map((end) => Number((end / scale).toPrecision(7))) ?? [low, high];
   }
 
   // Show beside each control why it was refused, and its played value; return refused keys without a control.
   refuse(refused) {
-    for (const [key, { row, show }] of this.rows) {
+    for (const [key, { row, show, control }] of this.rows) {
       const words = row.querySelector(".refused");
       words.hidden = !(key in refused);
       words.textContent = (refused[key] ?? []).join("\n");
-      if (key in refused && key in (this.values ?? {})) show(this.values[key], true);
+      if (key in refused && key in (this.values ?? {})) show(this.values[key], true, control && this.ends(control));
     }
     return Object.keys(refused).filter((key) => !this.rows.has(key) || this.rows.get(key).row.hidden);
   }
