@@ -27,7 +27,13 @@ class Headline:
 
     def _begin(self, revision: int) -> None:
         self.window = MOMENT
-        self._revision, self._last, self._named = revision, "", {}
+        self._revision, self._last = revision, ""
+        self._named: dict[str, Any] = {}
+
+    @property
+    def pause(self) -> float:
+        """Time until the next report [s]: longer records take longer to judge."""
+        return max(MOMENT, self.window / 4.0)
 
     def seconds(self, steady: float) -> float:
         """Return the time to judge [s], for a setting that has not changed for a time [s]."""

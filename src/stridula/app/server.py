@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
 import ipaddress
 import mimetypes
 import re
+import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from importlib.resources import files
@@ -23,6 +25,8 @@ PAGE = files(__package__).joinpath("page")
 # Files of third parties, unchanged.
 VENDOR = "vendor"
 MOST_PAGES = 16
+# Interval at which waiting pages are looked after [s].
+SOON = 0.1
 # Codes of a closed socket: a page from another server, and too many pages.
 FROM_ELSEWHERE, TOO_MANY = 4403, 4429
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
@@ -41,10 +45,16 @@ HEADERS = {
 
 
 class Pages:
-    """The open pages and their shared process."""
+    """The open pages and their shared processes.
 
-    def __init__(self) -> None:
-        self.open, self.beside = 0, Beside()
+    Parameters
+    ----------
+    ready : Event or None
+        Set once the code is compiled; None if there is nothing to wait for.
+    """
+
+    def __init__(self, ready: threading.Event | None) -> None:
+        self.open, self.beside, self.ready = 0, Beside(), ready
 
     async def socket(self, socket: WebSocket) -> None:
         """Play for a page until it disconnects."""
@@ -58,11 +68,19 @@ class Pages:
         self.open += 1
         try:
             with suppress(WebSocketDisconnect):
+                await self._until_ready(socket)
                 await Session(socket, self.beside).run()
         finally:
             self.open -= 1
             if not self.open:
                 self.beside.close()
+
+    async def _until_ready(self, socket: WebSocket) -> None:
+        if self.ready is None or self.ready.is_set():
+            return
+        await socket.send_json({"type": "compiling"})
+        while not self.ready.is_set():
+            await asyncio.sleep(SOON)
 
     @asynccontextmanager
     async def until_the_end(self, app: Starlette) -> AsyncIterator[None]:
@@ -71,7 +89,7 @@ class Pages:
         await self.beside.end()
 
 
-def create_app(is_open: bool = False) -> ASGIApp:
+def create_app(is_open: bool = False, ready: threading.Event | None = None) -> ASGIApp:
     """Return the server of the page.
 
     Parameters
@@ -79,8 +97,10 @@ def create_app(is_open: bool = False) -> ASGIApp:
     is_open : bool, optional
         Whether other machines may connect; if not, requests must use a loopback name, so that no other page in the
         browser can reach the server under another name.
+    ready : Event, optional
+        Set once the code is compiled, for which pages wait.
     """
-    pages = Pages()
+    pages = Pages(ready)
     known = {entry.name: entry for entry in PAGE.iterdir() if entry.is_file()}
     known |= {f"{VENDOR}/{entry.name}": entry for entry in PAGE.joinpath(VENDOR).iterdir() if entry.is_file()}
 

@@ -289,7 +289,7 @@ class Session:
         before, headline = 0, now.Headline()
         with suppress(WebSocketDisconnect):
             while True:
-                await asyncio.sleep(now.MOMENT)
+                await asyncio.sleep(headline.pause)
                 async with self._changing:
                     instrument = self.instrument
                     if instrument is None or self._made < ENOUGH:

@@ -36,6 +36,8 @@ const TOO_SLOW = 0.5; // Seconds played per second below which maps are computed
 const PREPARES = 400; // Time after which a scene is shown as being prepared [ms].
 const LOWEST = 20; // Lowest frequency of a note [Hz].
 const LISTENING = "listening …"; // Until the first regime is found.
+const PREPARING = "Preparing: computing meshes, modes and the initial state. Playing starts when they are ready.";
+const COMPILING = "Compiling the simulation for this machine, once, which takes a minute or two. Playing starts by itself.";
 const LONGEST = 60000; // Largest scenario accepted from the user [bytes].
 const LONG = 5; // Time of drawing above which every other frame is skipped [ms].
 const stats = { drawing: 0, revision: 0, played: 0, samples: 0, frames: 0, fps: 0, dropouts: 0, latency: null, latencies: [], connected: false, level: 0, peak: 0 };
@@ -60,6 +62,7 @@ stream.onmessage = ({ data }) => {
 
 function told(message) {
   const answers = {
+    compiling: () => prepares(COMPILING),
     hello: () => welcome(message),
     scene: () => shown(message),
     refused: () => refused(message),
@@ -109,7 +112,12 @@ function send() {
   sent.set(revision, structuredClone(scene.now));
   say({ type: "scene", revision, ...scene.now, case: scene.now.case || "squeal" });
   clearTimeout(send.timer);
-  send.timer = setTimeout(() => ($("preparing").hidden = false), PREPARES);
+  send.timer = setTimeout(() => prepares(PREPARING), PREPARES);
+}
+
+function prepares(words) {
+  write("preparing", words);
+  $("preparing").hidden = false;
 }
 
 function answered(number) {
@@ -430,6 +438,7 @@ function record() {
   if (begins) {
     recorder.begin(now, isLive());
     $("unrecorded").hidden = true;
+    write("gaps", "");
     return;
   }
   const bytes = recorder.end(now);
@@ -441,9 +450,9 @@ function record() {
   }
   URL.revokeObjectURL($("recording").href);
   const href = URL.createObjectURL(new Blob([bytes], { type: "audio/wav" }));
-  const gaps = recorder.missing ? `, without ${recorder.missing.toFixed(1)} s that were missing` : "";
-  Object.assign($("recording"), { href, download: "stridula-recording.wav", textContent: `Save recording, ${recorder.seconds.toFixed(1)} s${gaps}` });
-  $("said").textContent = `recorded ${recorder.seconds.toFixed(1)} seconds${gaps}`;
+  write("gaps", recorder.missing ? `The recording lacks ${recorder.missing.toFixed(1)} s of sound that came too late.` : "");
+  Object.assign($("recording"), { href, download: "stridula-recording.wav", textContent: `Save recording, ${recorder.seconds.toFixed(1)} s` });
+  $("said").textContent = `recorded ${recorder.seconds.toFixed(1)} seconds`;
 }
 
 function save({ format, data }) {
@@ -528,6 +537,7 @@ $("drawer").addEventListener("click", () => {
   $("drawer").textContent = opens ? "Hide" : "Controls";
 });
 $("help").addEventListener("click", () => $("intro").showModal());
+$("problem-close").addEventListener("click", () => ($("problem").hidden = true));
 $("play").addEventListener("click", () => {
   mode = mode === "paused" ? "live" : "paused";
   pace();
@@ -589,6 +599,7 @@ document.addEventListener("keydown", (event) => {
   }
 });
 document.addEventListener("visibilitychange", pace);
+$("begin").addEventListener("click", () => sound.on || $("sound").click());
 $("intro").addEventListener("close", () => localStorage.setItem("visited", "1"));
 
 async function copied(text, what) {
