@@ -16,6 +16,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import stridula as st
+from stridula import plot
 from stridula.analysis import surface
 
 HALF, TURNS, LOAD = 0.010, 20.0, 2000.0
@@ -84,6 +85,7 @@ for friction in (0.3, 0.5):
     print(f"friction {friction}: {theory.equilibrium}, growing below 7 kHz: {', '.join(words) or 'none'}")
 
 system, faces = brake(0.5)
+plot.save(plot.system(system), "bodies.png")
 run = st.simulate(
     st.System(faces, [*system.drives, st.InitialEquilibrium(mode="most unstable", amplitude=1e-8)], system.connections),
     0.02,
