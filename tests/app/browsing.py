@@ -49,7 +49,7 @@ class Browsing(AbstractContextManager["Browsing"]):
         self.context.set_default_timeout(1000.0 * WAIT)
         self.complains = True
 
-    def open(self, hash: str = "", intro: bool = False, map: bool = False) -> Any:
+    def open(self, hash: str = "#case=squeal", intro: bool = False, map: bool = False) -> Any:
         """Open the page, without introduction and, unless requested, without map, and wait until it plays.
 
         All controls are shown.

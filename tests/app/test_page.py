@@ -60,6 +60,13 @@ def test_the_first_visit_is_introduced_and_the_second_is_not(browsing):
     intro.wait_for(state="hidden")
 
 
+def test_without_a_link_the_glass_plays(browsing):
+    page = browsing.open("")
+    until(page, "document.getElementById('case').value === 'glass'")
+    assert page.evaluate("stridula.now().source") == "probe 1"
+    assert page.evaluate("stridula.now().sources['probe 1'].name").startswith("Velocity, glass")
+
+
 def test_it_plays_and_draws(browsing):
     page = browsing.open()
     until(page, "stridula.stats.level > 1e-4 && stridula.stats.frames > 0")
