@@ -10,6 +10,8 @@ from typing import Any
 
 # Greatest length of an answer [bytes].
 LONGEST = 1_000_000
+# Priorities of the two processes, both lower than that of the sound.
+QUICK, SLOW = 5, 10
 # Time for which the process is kept after the last page has closed [s], so that a page that is loaded again does not
 # start another one.
 REST = 10.0
@@ -22,7 +24,7 @@ class Beside:
     """
 
     def __init__(self) -> None:
-        self._quick, self._slow = InTurn(), InTurn()
+        self._quick, self._slow = InTurn(QUICK), InTurn(SLOW)
 
     async def ask(self, what: str, **words: Any) -> Any:
         """Return the answer to a question, asked in turn, or None if the last page closes meanwhile.
@@ -48,9 +50,16 @@ class Beside:
 
 
 class InTurn:
-    """A process that answers questions in turn, while any page is open or may return."""
+    """A process that answers questions in turn, while any page is open or may return.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    niceness : int
+        Its priority, lower than that of the server by this number.
+    """
+
+    def __init__(self, niceness: int) -> None:
+        self.niceness = niceness
         self._process: asyncio.subprocess.Process | None = None
         self._turn = asyncio.Lock()
         self._closed = 0
@@ -119,7 +128,6 @@ class InTurn:
     async def _started(self) -> asyncio.subprocess.Process:
         if self._process is None or self._process.returncode is not None:
             pipe = asyncio.subprocess.PIPE
-            self._process = await asyncio.create_subprocess_exec(
-                sys.executable, "-m", "stridula.app.beside_worker", stdin=pipe, stdout=pipe, limit=LONGEST
-            )
+            command = (sys.executable, "-m", "stridula.app.beside_worker", str(self.niceness))
+            self._process = await asyncio.create_subprocess_exec(*command, stdin=pipe, stdout=pipe, limit=LONGEST)
         return self._process

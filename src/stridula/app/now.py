@@ -14,12 +14,15 @@ from ..arrays import Array
 
 # Shortest and longest time that decides a regime [s], and number of periods in it.
 MOMENT, LONGEST, PERIODS = 1.0, 10.0, 3.0
+# Share of a second that a stroke must have lasted to be judged, and number of reports that wait for it.
+LASTED, REPORTS = 0.9, 3
 
 
 class Headline:
     """The motion that is named, judged over a second, or over longer if it is slower or not the same each second.
 
-    A regime is named as soon as it is found after a change, later once it is found twice in succession.
+    A regime is named as soon as it is found after a change, later once it is found twice in succession. The vibration
+    of the start of a stroke does not count, unless strokes are shorter than a second.
     """
 
     def __init__(self) -> None:
@@ -27,7 +30,7 @@ class Headline:
 
     def _begin(self, revision: int) -> None:
         self.window = MOMENT
-        self._revision, self._last = revision, ""
+        self._revision, self._last, self._waited = revision, "", 0
         self._named: dict[str, Any] = {}
 
     @property
@@ -38,6 +41,12 @@ class Headline:
     def seconds(self, steady: float) -> float:
         """Return the time to judge [s], for a setting that has not changed for a time [s]."""
         return min(self.window, max(MOMENT, steady))
+
+    def takes(self, seconds: float, revision: int) -> bool:
+        """Return whether a record of a time [s] at a revision is long enough to be judged."""
+        is_long = seconds > LASTED * MOMENT
+        self._waited = 0 if is_long else self._waited + 1
+        return is_long or revision != self._revision or self._waited > REPORTS
 
     def after(self, found: dict[str, Any], revision: int) -> dict[str, Any]:
         """Return the motion to name, one that `measured` returned, after another was found at a revision."""

@@ -306,7 +306,8 @@ class Session:
                     last = instrument.last_seconds
                     variables, pressure = last.moment(headline.seconds(last.steady))
                     system = instrument.played.system
-                if not variables or len(variables["damping_loss"]) < SHORTEST * RATE:
+                seconds = len(variables["damping_loss"]) / RATE if variables else 0.0
+                if seconds < SHORTEST or not headline.takes(seconds, revision):
                     continue
                 told = await asyncio.to_thread(_all_said, variables)
                 members = groups(system.contact_names, system.surface_names)
