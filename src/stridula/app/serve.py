@@ -6,9 +6,11 @@ import errno
 import gc
 import ipaddress
 import logging
+import os
 import socket
 import sys
 import threading
+import time
 import webbrowser
 from contextlib import suppress
 
@@ -25,6 +27,8 @@ from .server import create_app
 
 # Time to wait for pages when the server stops [s].
 GRACE = 2
+# Interval at which the end of the server is looked for [s].
+SOON = 0.2
 # Host names that stand for all addresses of this machine.
 EVERYWHERE = ("0.0.0.0", "::")
 # An unused address and port.
@@ -67,9 +71,11 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
         threading.Timer(0.5, webbrowser.open, [address]).start()
     ready = threading.Event()
     threading.Thread(target=_get_ready, args=[ready], daemon=True).start()
+    running = server(is_open, ready)
+    threading.Thread(target=_end_at_last, args=[running], daemon=True).start()
     # Ctrl-C ends the server normally.
     with suppress(KeyboardInterrupt):
-        server(is_open, ready).run(sockets=[listening])
+        running.run(sockets=[listening])
 
 
 def server(is_open: bool, ready: threading.Event | None = None) -> uvicorn.Server:
@@ -97,6 +103,14 @@ def server(is_open: bool, ready: threading.Event | None = None) -> uvicorn.Serve
     )
     logging.getLogger("uvicorn.error").addFilter(is_news)
     return uvicorn.Server(config)
+
+
+def _end_at_last(running: uvicorn.Server) -> None:
+    """End the process some time after its server was told to end: threads that compile would keep it for minutes."""
+    while not running.should_exit:
+        time.sleep(SOON)
+    time.sleep(2 * GRACE)
+    os._exit(0)
 
 
 def _get_ready(ready: threading.Event) -> None:

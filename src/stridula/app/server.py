@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import ipaddress
 import mimetypes
 import re
@@ -25,8 +24,6 @@ PAGE = files(__package__).joinpath("page")
 # Files of third parties, unchanged.
 VENDOR = "vendor"
 MOST_PAGES = 16
-# Interval at which waiting pages are looked after [s].
-SOON = 0.1
 # Codes of a closed socket: a page from another server, and too many pages.
 FROM_ELSEWHERE, TOO_MANY = 4403, 4429
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
@@ -68,19 +65,11 @@ class Pages:
         self.open += 1
         try:
             with suppress(WebSocketDisconnect):
-                await self._until_ready(socket)
-                await Session(socket, self.beside).run()
+                await Session(socket, self.beside, self.ready).run()
         finally:
             self.open -= 1
             if not self.open:
                 self.beside.close()
-
-    async def _until_ready(self, socket: WebSocket) -> None:
-        if self.ready is None or self.ready.is_set():
-            return
-        await socket.send_json({"type": "compiling"})
-        while not self.ready.is_set():
-            await asyncio.sleep(SOON)
 
     @asynccontextmanager
     async def until_the_end(self, app: Starlette) -> AsyncIterator[None]:

@@ -54,6 +54,8 @@ SHORTEST = 0.2
 KNOWN, ENOUGH = 0.6, 48
 # A page that has not sent a first message is disconnected after this time [s].
 HURRY = 10.0
+# Interval at which a page that waits is looked after [s].
+SOON = 0.1
 # Largest number of messages that wait while one is answered.
 WAITING = 16
 # Codes of a socket that closed without a code, and of one whose page sent nothing.
@@ -69,10 +71,12 @@ class Session:
         Its connection.
     beside : Beside
         The processes that compute its headline, linear theory and maps.
+    ready : Event, optional
+        Set once the code is compiled, for which the page waits.
     """
 
-    def __init__(self, socket: WebSocket, beside: Beside) -> None:
-        self.socket, self.beside = socket, beside
+    def __init__(self, socket: WebSocket, beside: Beside, ready: threading.Event | None = None) -> None:
+        self.socket, self.beside, self.ready = socket, beside, ready
         self.instrument: Instrument | None = None
         self.scene: Scene | None = None
         self.source, self.repeats = "pressure", True
@@ -94,19 +98,10 @@ class Session:
 
     async def run(self) -> None:
         """Answer the page until it disconnects, then raise WebSocketDisconnect."""
-        await self._tell(
-            "hello",
-            version=__version__,
-            rate=RATE,
-            kept=KEPT,
-            presets=presets(),
-            tour=[asdict(stop) for stop in STOPS],
-            regimes=REGIME_COLOURS,
-            **controls.turned_of_pair({}).described,
-        )
         try:
-            patience: float | None = HURRY
             self._do("listening", self._listening())
+            await self._greet()
+            patience: float | None = HURRY
             while True:
                 try:
                     heard = await asyncio.wait_for(self._messages.get(), patience)
@@ -122,6 +117,25 @@ class Session:
             self._gone.set()
             for task in self._tasks.values():
                 task.cancel()
+
+    async def _greet(self) -> None:
+        """Send the greeting once the code is compiled."""
+        if self.ready is not None and not self.ready.is_set():
+            await self._tell("compiling")
+            while not self.ready.is_set():
+                if self._gone.is_set():
+                    raise WebSocketDisconnect(GONE)
+                await asyncio.sleep(SOON)
+        await self._tell(
+            "hello",
+            version=__version__,
+            rate=RATE,
+            kept=KEPT,
+            presets=presets(),
+            tour=[asdict(stop) for stop in STOPS],
+            regimes=REGIME_COLOURS,
+            **controls.turned_of_pair({}).described,
+        )
 
     async def _listening(self) -> None:
         """Receive messages, also while one is answered, so that a page that leaves is noticed at once."""
