@@ -10,10 +10,9 @@ import pytest
 
 import stridula as st
 from stridula.analysis.regimes import REGIMES
-from stridula.app.beside import Beside
+from stridula.app.beside import Beside, InTurn
 from stridula.app.maps import rows
 from stridula.app.messages import Map
-from stridula.app.now import said
 from stridula.app.playable import playable
 
 from .conversation import Conversation
@@ -107,26 +106,32 @@ def test_a_held_map_keeps_its_rows_and_continues_with_the_next(talk):
     assert sorted([first, *rows]) == [0, 1, 2, 3]
 
 
-def test_the_present_motion_does_not_wait_for_a_map():
-    async def asked() -> list[str]:
-        beside, ended = Beside(), []
+def test_the_present_motion_does_not_wait_for_a_map(monkeypatch):
+    asked = []
 
-        async def ask(what: str, **words) -> None:
-            await beside.ask(what, **words)
-            ended.append(what)
+    async def stuck(self, what: str, **words) -> str:
+        """Answer once nothing else is asked: a row of a map takes seconds, the first one longer."""
+        asked.append(what)
+        async with self._turn:
+            await asyncio.sleep(3600.0 if what == "regimes" else 0.0)
+        return what
 
-        played = playable("squeal", None, {})
-        row = {"tables": played.tables, "keys": [FRICTION], "points": [[1.0 + 0.01 * k] for k in range(24)]}
-        slow = [asyncio.create_task(ask("regimes", **row)) for _ in range(2)]
-        await asyncio.sleep(0.1)
-        names = ("normal_force", "tangential_force", "landings", "damping_loss", "friction_loss", "impact_loss")
-        told = {name: said(np.ones(12_000)) for name in names} | {"status_share": said(np.ones((12_000, 3)) / 3.0)}
-        await ask("now", interval=1.0 / 48_000, contacts=["contact"], variables=told)
-        await asyncio.gather(*slow)
-        await beside.end()
-        return ended
+    monkeypatch.setattr(InTurn, "ask", stuck)
 
-    assert asyncio.run(asked()) == ["now", "regimes", "regimes"]
+    async def answers() -> tuple[str, bool]:
+        beside = Beside()
+        row = asyncio.create_task(beside.ask("regimes"))
+        theory = asyncio.create_task(beside.ask("theory"))
+        await asyncio.sleep(0)
+        found = await asyncio.wait_for(beside.ask("now"), 10.0)
+        done = theory.done()
+        row.cancel()
+        theory.cancel()
+        return found, done
+
+    # Linear theory waits for the row.
+    assert asyncio.run(answers()) == ("now", False)
+    assert asked == ["regimes", "theory", "now"]
 
 
 @pytest.mark.parametrize("turns", range(4))
