@@ -109,7 +109,8 @@ html_theme_options = {
     "show_prev_next": False,
     "header_links_before_dropdown": 6,
 }
-html_sidebars = {"index": []}
+# Pages without pages below them.
+html_sidebars = {name: [] for name in ("index", "start", "coming-from", "limits", "glossary", "changelog")}
 
 logger = logging.getLogger(__name__)
 

@@ -1,9 +1,10 @@
 """
-Disc brake
-==========
+Disc brake in Python
+====================
 
 Two lined pads press on a turning disc with a hat: the growing modes, their limit cycle, and the pressure of the pads.
-:doc:`../brake` explains it.
+:doc:`../brake` explains it. The shipped case ``brake``, which the page plays, has a softer surface of the linings and
+64 contacts, and squeals at 2.8 kHz; the growing modes of this one are others.
 
 The disc is made of cast iron and held at the flange of its hat. Each pad is a backing plate of steel with a lining. All
 points of the lining's face touch the disc through the stiffness of its rough surface; springs hold the backing plates.
@@ -15,6 +16,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import stridula as st
+from stridula import plot
 from stridula.analysis import surface
 
 HALF, TURNS, LOAD = 0.010, 20.0, 2000.0
@@ -83,6 +85,7 @@ for friction in (0.3, 0.5):
     print(f"friction {friction}: {theory.equilibrium}, growing below 7 kHz: {', '.join(words) or 'none'}")
 
 system, faces = brake(0.5)
+plot.save(plot.system(system), "bodies.png")
 run = st.simulate(
     st.System(faces, [*system.drives, st.InitialEquilibrium(mode="most unstable", amplitude=1e-8)], system.connections),
     0.02,

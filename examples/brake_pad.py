@@ -14,6 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import stridula as st
+from stridula import plot
 
 THICKNESS, TURNS = 0.012, 30.0
 IRON, LINING = st.Material(1.1e11, 7100.0, 0.28), st.Material(5e9, 2500.0, 0.3)
@@ -72,6 +73,7 @@ for friction in (0.2, 0.4, 0.6):
     print(f"friction {friction}: {open_feet} feet lift off, growing modes [Hz]: {words}")
 
 system = brake(0.6)
+plot.save(plot.system(system), "bodies.png")
 run = st.simulate(system, 0.01, sample_rate=1e5, probes=[st.Velocity(disc.at((0.12, 0.0, THICKNESS / 2)), "y")])
 share = run.status_share.mean(("time", "contact")).values
 print(

@@ -14,6 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import stridula as st
+from stridula import plot
 
 ALUMINIUM, LEAN, SPEED = st.Material(7e10, 2700.0, 0.33), np.radians(4.0), 1.0
 EDGE = 0.0025 * np.arange(5)
@@ -77,6 +78,7 @@ print("backwards:", backwards or "no mode grows")
 
 # Some nodes of the edge are open in equilibrium; the run starts there, with ten nanometres of the growing mode.
 system = rig(0.152)
+plot.save(plot.system(system), "bodies.png")
 theory = st.sliding_stability(system)
 status = [str(word) for word in theory.status.values]
 fastest = int(theory.growth_rate.argmax("mode"))

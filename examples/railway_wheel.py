@@ -14,12 +14,16 @@ import numpy as np
 from scipy.signal import butter, hilbert, sosfiltfilt
 
 import stridula as st
+from stridula import plot
 
 RADIUS, CREEP = 0.46, "contacts.0.surface_velocity.0"
+# Pressure of a plane wave over the velocity of the air [Pa s/m].
+WAVE = 413.0
 STANDING = {"turning": 0.0, "contacts.0.surface_velocity.1": 0.0}
 case = st.load_scenario("wheel")
 system, wheel = case.system, case.system.contact.tip.body
 frequency, numbers = wheel.modes().frequency, wheel.numbers
+plot.save(plot.system(system), "bodies.png")
 
 
 def growing(changes: dict[str, object], near: float) -> str:
@@ -71,3 +75,9 @@ panels[1].legend()
 panels[2].plot(hertz / 1e3, 20.0 * np.log10(spectrum / spectrum.max()), linewidth=0.6)
 panels[2].set(xlabel="frequency [kHz]", ylabel="limit cycle [dB]", xlim=(0.0, 5.0), ylim=(-60.0, 5.0))
 figure.savefig("wheel.png", dpi=110)
+
+# %%
+# The sound beside the wheel, as of a plane wave from its wall.
+
+pressure = (WAVE * run.velocity[:, 0]).assign_attrs(units="Pa")
+st.listen(pressure)

@@ -13,6 +13,7 @@ from stridula import plot
 
 scenario = st.load_scenario("squeal-on-plate")
 system, plate = scenario.system, scenario.system.track
+plot.save(plot.system(system), "bodies.png")
 run = scenario.simulate(duration=0.4)
 print(f"{st.regime(run).regime.item()}; plate with {plate.modes().count} modes")
 plot.save(plot.overview(run), "stick-on-a-plate.png")

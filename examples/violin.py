@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 import stridula as st
-from stridula import analysis
+from stridula import analysis, plot
 
 scenario = st.load_scenario("violin")
 string, law = scenario.system.contacts[0].track.body, scenario.system.contacts[0].friction
@@ -25,6 +25,8 @@ DECAY = 0.5 * float(string.modes().damping_rate[0])
 RESISTANCE = 2.0 * IMPEDANCE * FUNDAMENTAL / DECAY
 # Torsional waves, 5.2 times as fast as transverse ones, on a round string.
 TORSION = 0.5 * 5.2 * IMPEDANCE
+
+plot.save(plot.system(scenario.system), "bodies.png")
 
 # The scenario: its motion, its sound, and where the string slips.
 run = scenario.simulate()

@@ -14,11 +14,15 @@ import numpy as np
 from scipy.signal import hilbert
 
 import stridula as st
+from stridula import plot
 
 RIM, HEIGHT = 0.0325, 0.170
+# Pressure of a plane wave over the velocity of the air [Pa s/m].
+WAVE = 413.0
 case = st.load_scenario("glass")
 system = case.system
 finger, glass = system.bodies
+plot.save(plot.system(system), "bodies.png")
 frequency, numbers = glass.modes().frequency, glass.numbers
 for order in range(2, 5):
     rows = np.abs(glass.trace((RIM, 0.0, HEIGHT)))
@@ -70,3 +74,9 @@ panels[2].axvline(1.2, color="k", linestyle=":", label="finger lifted")
 panels[2].set(xlabel="time [s]", ylabel="velocity across the rim [m/s]", ylim=(0.0, 0.42))
 panels[2].legend(loc="upper right", fontsize="small")
 figure.savefig("glass.png", dpi=110)
+
+# %%
+# The sound beside the glass, as of a plane wave from its wall.
+
+pressure = (WAVE * run.velocity[:, 0]).assign_attrs(units="Pa")
+st.listen(pressure)

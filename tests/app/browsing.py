@@ -49,8 +49,12 @@ class Browsing(AbstractContextManager["Browsing"]):
         self.context.set_default_timeout(1000.0 * WAIT)
         self.complains = True
 
-    def open(self, hash: str = "", intro: bool = False, map: bool = False) -> Any:
-        """Open the page, without introduction and, unless requested, without map, and wait until it plays."""
+    def open(self, hash: str = "#case=squeal", intro: bool = False, map: bool = False) -> Any:
+        """Open the page, without introduction and, unless requested, without map, and wait until it plays.
+
+        All controls are shown.
+        """
+        self.context.add_init_script("localStorage.getItem('more') ?? localStorage.setItem('more', '1')")
         if not intro:
             self.context.add_init_script("localStorage.setItem('visited', '1')")
         page = self.begin(hash)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import select
@@ -14,6 +15,8 @@ from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
 from typing import Any
 
+from websockets.sync.client import connect
+
 from stridula.app.serve import COMPILING
 
 # Time limit [s]: a loaded machine is slow, a first start and a first map compile.
@@ -24,7 +27,9 @@ COMMAND = (sys.executable, "-c", "from stridula.cli import main; main()", "app",
 class Server:
     """`stridula app` on a free or given port, with further arguments and environment if given."""
 
-    def __init__(self, errors: Path, port: int = 0, arguments: Sequence[str] = (), **environment: str) -> None:
+    def __init__(
+        self, errors: Path, port: int = 0, arguments: Sequence[str] = (), is_ready: bool = True, **environment: str
+    ) -> None:
         self.errors = errors
         with errors.open("ab") as file:
             self.process = subprocess.Popen(
@@ -42,6 +47,15 @@ class Server:
             self.kill()
             raise AssertionError(f"the server said {line!r} and {self.complaints}")
         self.address, self.port = found[1], int(found[2])
+        if is_ready:
+            self._wait_until_ready()
+
+    def _wait_until_ready(self) -> None:
+        """Wait for a greeting: before it, the server may compile."""
+        with connect(f"ws://127.0.0.1:{self.port}/socket", origin=self.origin, compression=None) as socket:
+            told = ""
+            while told != "hello":
+                told = json.loads(socket.recv(timeout=START))["type"]
 
     @property
     def origin(self) -> str:

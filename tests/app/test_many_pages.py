@@ -66,13 +66,13 @@ def test_dropped_sessions_leave_nothing_behind(own):
                 talk.until("scene")
                 talk.say("pull", parts=5, samples=480)
             if number % 4 > 2:
-                talk.say("map", points=4, **SIDES)
+                talk.say("map", revision=1, points=4, **SIDES)
 
     with conversation(own) as first:
         # An open page keeps the process of maps, which still has rows of closed pages to compute.
         first.until("hello")
         first.scene()
-        first.say("map", points=4, **SIDES)
+        first.say("map", revision=1, points=4, **SIDES)
         first.until("map row")
         for number in range(WARM_UP):
             drop(number)
@@ -92,7 +92,7 @@ def test_unwanted_rows_start_no_process(own):
         for page in pages:
             page.until("hello")
             page.scene()
-            page.say("map", points=12, **SIDES)
+            page.say("map", revision=1, points=12, **SIDES)
         pages[0].until("map row")
         assert len(process.children()) == 1
     eventually(lambda: not process.children(), "an end of the process of maps")
@@ -120,7 +120,7 @@ def test_the_process_of_maps_ends_with_the_server(own):
     with conversation(own) as talk:
         talk.until("hello")
         talk.scene()
-        talk.say("map", points=8, **SIDES)
+        talk.say("map", revision=1, points=8, **SIDES)
         talk.until("map row")
         (maker,) = process.children()
         own.process.kill()

@@ -10,7 +10,7 @@ import pytest
 
 import stridula as st
 from stridula.analysis.regimes import REGIMES
-from stridula.app.beside import Beside
+from stridula.app.beside import Beside, InTurn
 from stridula.app.maps import rows
 from stridula.app.messages import Map
 from stridula.app.playable import playable
@@ -24,11 +24,11 @@ ACROSS, UP = {"key": FRICTION, "low": 0.2, "high": 1.6}, {"key": ANGLE, "low": 0
 def rows_of(talk: Conversation, **words) -> dict[int, list[str]]:
     """Return all rows of a map by number."""
     talk.others.clear()
-    talk.say("map", **words)
+    talk.say("map", revision=talk.revision, **words)
     done = talk.until("map done", "problem")
     assert done["type"] == "map done", done
     rows = [one for one in talk.others if isinstance(one, dict) and one["type"] == "map row"]
-    assert {(row["x"], row["y"]) for row in rows} == {(words["x"]["key"], words["y"]["key"])}
+    assert {row["revision"] for row in (*rows, done)} == {talk.revision}
     assert len(rows) == len({row["row"] for row in rows})
     return {row["row"]: row["regimes"] for row in rows}
 
@@ -51,7 +51,7 @@ def test_a_map_has_every_row_and_agrees_with_a_sweep(talk):
 
 def test_playing_continues_beside_a_map_and_a_new_map_replaces_it(talk):
     talk.scene("squeal")
-    talk.say("map", x=ACROSS, y=UP, points=12)
+    talk.say("map", revision=talk.revision, x=ACROSS, y=UP, points=12)
     assert len(talk.play(480).sound) == 480
     talk.until("map row")
     rows = rows_of(talk, x={**ACROSS, "low": 0.3}, y=UP, points=2)
@@ -61,7 +61,7 @@ def test_playing_continues_beside_a_map_and_a_new_map_replaces_it(talk):
 
 def test_an_unwanted_map_stops(talk):
     talk.scene("squeal")
-    talk.say("map", x=ACROSS, y=UP, points=12)
+    talk.say("map", revision=talk.revision, x=ACROSS, y=UP, points=12)
     talk.until("map row")
     talk.say("no map")
     talk.play(480)
@@ -71,10 +71,73 @@ def test_an_unwanted_map_stops(talk):
     assert len(rows) == 2
 
 
+@pytest.mark.parametrize("case", ["belt", "glass", "judder"])
+def test_a_map_around_the_case_before_is_not_refused_but_forgotten(talk, case):
+    """The page may ask for one before it knows that the next case plays."""
+    talk.scene("squeal")
+    before = talk.revision
+    talk.scene(case)
+    talk.others.clear()
+    talk.say("map", revision=before, x=ACROSS, y=UP, points=2)
+    assert len(talk.play(480).sound) == 480
+    assert not [one for one in talk.others if isinstance(one, dict) and one["type"] in ("problem", "map row")]
+
+
+def test_a_map_survives_changes_of_its_own_axes(talk):
+    talk.scene("squeal")
+    before = talk.revision
+    talk.scene("squeal", {FRICTION: 0.7})
+    talk.say("map", revision=before, x=ACROSS, y=UP, points=2)
+    assert talk.until("map done", "problem") == {"type": "map done", "revision": before}
+
+
+def test_a_held_map_keeps_its_rows_and_continues_with_the_next(talk):
+    talk.scene("squeal")
+    talk.say("map", revision=talk.revision, x=ACROSS, y=UP, points=4)
+    talk.say("hold map", on=True)
+    first = talk.until("map row")["row"]
+    # The time of several rows once the code is compiled.
+    with pytest.raises(TimeoutError):
+        talk.socket.recv(timeout=3.0)
+    talk.others.clear()
+    talk.say("hold map", on=False)
+    talk.until("map done")
+    rows = [one["row"] for one in talk.others if isinstance(one, dict) and one["type"] == "map row"]
+    assert sorted([first, *rows]) == [0, 1, 2, 3]
+
+
+def test_the_present_motion_does_not_wait_for_a_map(monkeypatch):
+    asked = []
+
+    async def stuck(self, what: str, **words) -> str:
+        """Answer once nothing else is asked: a row of a map takes seconds, the first one longer."""
+        asked.append(what)
+        async with self._turn:
+            await asyncio.sleep(3600.0 if what == "regimes" else 0.0)
+        return what
+
+    monkeypatch.setattr(InTurn, "ask", stuck)
+
+    async def answers() -> tuple[str, bool]:
+        beside = Beside()
+        row = asyncio.create_task(beside.ask("regimes"))
+        theory = asyncio.create_task(beside.ask("theory"))
+        await asyncio.sleep(0)
+        found = await asyncio.wait_for(beside.ask("now"), 10.0)
+        done = theory.done()
+        row.cancel()
+        theory.cancel()
+        return found, done
+
+    # Linear theory waits for the row.
+    assert asyncio.run(answers()) == ("now", False)
+    assert asked == ["regimes", "theory", "now"]
+
+
 @pytest.mark.parametrize("turns", range(4))
 def test_a_map_cancelled_at_its_start_starts_no_process(turns):
     played = playable("squeal", None, {})
-    wanted = Map.model_validate({"type": "map", "x": ACROSS, "y": UP, "points": 2})
+    wanted = Map.model_validate({"type": "map", "revision": 1, "x": ACROSS, "y": UP, "points": 2})
 
     async def given_up() -> None:
         beside = Beside()
@@ -144,7 +207,7 @@ def test_a_map_without_valid_systems_is_empty(talk):
 )
 def test_bad_sides_of_a_map_are_refused(talk, x, named):
     talk.scene("squeal")
-    talk.say("map", x=x, y=UP, points=4)
+    talk.say("map", revision=talk.revision, x=x, y=UP, points=4)
     (problem,) = talk.until("problem", "map row", "map done")["problems"]
     assert problem.startswith(named)
     assert len(talk.play(480).sound) == 480
@@ -153,12 +216,12 @@ def test_bad_sides_of_a_map_are_refused(talk, x, named):
 @pytest.mark.parametrize("points", [1, 25, 10_000_000])
 def test_the_size_of_a_map_is_limited(talk, points):
     talk.scene("squeal")
-    talk.say("map", x=ACROSS, y=UP, points=points)
+    talk.say("map", revision=talk.revision, x=ACROSS, y=UP, points=points)
     (problem,) = talk.until("problem", "map row", "map done")["problems"]
     assert problem.startswith("map.points must be")
 
 
 def test_equal_sides_of_a_map_are_refused(talk):
     talk.scene("squeal")
-    talk.say("map", x=ACROSS, y=ACROSS, points=2)
+    talk.say("map", revision=talk.revision, x=ACROSS, y=ACROSS, points=2)
     assert talk.until("problem", "map done")["type"] == "problem"

@@ -45,14 +45,14 @@ def test_a_tone_belongs_to_the_nearest_mode_within_five_percent(tmp_path):
 
 @pytest.mark.parametrize("none", [0, None, -3.0])
 def test_no_tone_means_no_note(tmp_path, none):
-    assert result_of(tmp_path, READING, [[none, [100.0]]]) == [""]
+    assert result_of(tmp_path, READING, [[none, [100.0]]]) == [{"note": "", "mode": ""}]
 
 
-def test_the_note_is_written_in_one_line(tmp_path):
+def test_note_and_mode_are_written(tmp_path):
     given = [[440.0, []], [2950.0, []], [2980.0, [2930.0]], [322.0, [320.0]]]
-    assert result_of(tmp_path, READING, given) == [
-        "A4",
-        "F♯7 −6 cents",
-        "F♯7 +12 cents, near the growing mode at 2.93 kHz",
-        "E4 −41 cents, near the growing mode at 320 Hz",
+    assert [(one["note"], one["mode"]) for one in result_of(tmp_path, READING, given)] == [
+        ("A4", ""),
+        ("F♯7 −6 cents", ""),
+        ("F♯7 +12 cents", "near the growing mode at 2.93 kHz"),
+        ("E4 −41 cents", "near the growing mode at 320 Hz"),
     ]

@@ -13,7 +13,9 @@ from stridula.app.sources import SOURCES
 from .conversation import RATE
 from .scripting import result_of
 
-CEILING = 0.7
+CEILING, MOST = 0.7, 30.0
+WORDS = """import { levelWords } from "./level.js";
+result = given.map((words) => levelWords(...words));"""
 BLOCK = 4800
 # For each tenth of a second: the largest output and the largest reduction by the limiter [dB].
 PLAYER = """import { Voice } from "./player.js";
@@ -53,9 +55,22 @@ def test_levelled_sounds_are_equally_loud(tmp_path, amplitude):
 
 def test_amplification_is_limited_and_silence_stays_silent(tmp_path):
     (faint,) = played(tmp_path, tone(1e-4, 8.0))
-    assert 0.002 < faint[-1, 0] < 0.0031
+    assert 0.0021 < faint[-1, 0] < 0.0033
     (after,) = played(tmp_path, np.concatenate([tone(0.3, 3.0), np.zeros(30 * RATE), tone(0.3, 1.0)]))
-    assert after[-10, 1] < 20.0 * np.log10(30.0) / 2.0
+    assert after[-10, 1] < MOST / 2.0
+
+
+def test_the_page_says_how_the_level_is_set(tmp_path):
+    pressure = {"full_scale": 0.1, "unit": "Pa"}
+    gains = [1.0, 20.0, 10.0 ** (MOST / 20.0)]
+    fixed, *levelled = result_of(tmp_path, WORDS, [[pressure, False, 1.0], *([pressure, True, gain] for gain in gains)])
+    assert fixed == "At 0 dB, 0.1 Pa is full scale."
+    reached = "Automatic level: the loudest sound of the last 4 s comes to 3 dB below full scale."
+    assert levelled[:2] == [reached, reached]
+    assert levelled[2] == "Automatic level: the sound is so faint that it is amplified by 30 dB, the most possible."
+    # At this gain it is below that level: the words of the others would be wrong.
+    (faint,) = played(tmp_path, tone(1e-4, 8.0))
+    assert faint[-1, 0] < CEILING / 100.0
 
 
 def test_a_level_falls_at_once_and_rises_within_seconds(tmp_path):

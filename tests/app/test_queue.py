@@ -33,28 +33,3 @@ def test_a_slow_machine_is_reported_until_it_keeps_up(tmp_path):
     drops = [["drop", 1000.0 * k] for k in range(1, 13)]
     behind = [said for _, said in result_of(tmp_path, QUEUE, [*drops, ["rest", 21_000.0], ["rest", 22_100.0]])]
     assert behind == [False] * 6 + [True] * 7 + [False]
-
-
-MAP = """import { RegimeMap } from "./map.js";
-const one = () => ({ addEventListener() {}, replaceChildren() {}, dataset: {}, checked: true });
-globalThis.document = { getElementById: one };
-globalThis.Option = class {};
-const timers = [];
-globalThis.setTimeout = (then) => timers.push(then);
-globalThis.clearTimeout = () => {};
-const numbers = ["a", "b"].map((key) => ({ key, label: key, low: 0, high: 1, scale: 1 }));
-const said = [];
-const controls = { numbers: () => numbers, values: { a: 0.5, b: 0.5 } };
-const map = new RegimeMap(null, controls, {}, ({ type }) => said.push(type));
-map.hold();
-map.follow();
-timers.pop()();
-map.hold();
-timers.pop()();
-map.done();
-map.hold();
-result = said;"""
-
-
-def test_the_computation_of_a_map_pauses_after_a_drop_out(tmp_path):
-    assert result_of(tmp_path, MAP) == ["no map", "map", "no map", "map"]

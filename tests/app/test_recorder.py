@@ -13,17 +13,27 @@ from .scripting import result_of
 
 RECORDED = """import { Recorder } from "./recorder.js";
 const recorder = new Recorder(48000);
-recorder.begin();
+recorder.begin(0, true);
 const room = given.map(([values, scale, unit]) => recorder.take(Float32Array.from(values), { scale, unit }));
 const seconds = recorder.seconds;
-const bytes = recorder.end();
+const bytes = recorder.end(1);
 result = { room, seconds, on: recorder.on, bytes: bytes && Buffer.from(bytes).toString("base64") };"""
 LONG = """import { Recorder } from "./recorder.js";
 const recorder = new Recorder(48000);
-recorder.begin();
+recorder.begin(0, true);
 let parts = 0;
 while (recorder.take(new Float32Array(48000 * 7 + 13).fill(0.5), { scale: 1, unit: "Pa" })) parts += 1;
 result = [parts, recorder.seconds];"""
+
+GAPS = """import { Recorder } from "./recorder.js";
+result = given.map((acts) => {
+  const recorder = new Recorder(48000);
+  for (const [name, ...words] of acts) {
+    if (name === "take") recorder.take(new Float32Array(48000 * words[0]).fill(0.5), { scale: 1, unit: "Pa" });
+    else recorder[name](...words);
+  }
+  return Number(recorder.missing.toFixed(6));
+});"""
 
 
 def recorded(folder, parts):
@@ -67,3 +77,18 @@ def test_silence_is_a_file_and_an_empty_recording_is_not(tmp_path):
 
 def test_a_recording_ends_after_a_minute(tmp_path):
     assert result_of(tmp_path, LONG) == [8, 60]
+
+
+def test_sound_that_did_not_come_is_missing_and_pauses_are_not(tmp_path):
+    gap = [["begin", 10.0, True], ["take", 1.8], ["end", 13.0]]
+    whole = [["begin", 10.0, True], ["take", 2.95], ["end", 13.0]]
+    pause = [
+        ["begin", 10.0, True],
+        ["take", 1.0],
+        ["hears", False, 11.0],
+        ["hears", True, 20.0],
+        ["take", 2.0],
+        ["end", 22.0],
+    ]
+    late = [["hears", True, 0.0], ["begin", 10.0, False], ["hears", True, 11.0], ["take", 0.5], ["end", 12.0]]
+    assert result_of(tmp_path, GAPS, [gap, whole, pause, late]) == [1.2, 0.0, 0.0, 0.5]

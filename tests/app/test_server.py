@@ -6,6 +6,7 @@ import ipaddress
 import json
 import re
 import socket
+import time
 from importlib.resources import files
 
 import pytest
@@ -17,8 +18,10 @@ from stridula.app import serve
 from stridula.app.serve import COMPILING, addresses, outward
 
 from .conversation import conversation
-from .serving import WAIT, Server, app
+from .serving import START, WAIT, Server, app
 
+# Time in which a server ends, whatever it computes [s].
+ENDS = 30.0
 FOLDER = files("stridula.app").joinpath("page")
 PAGE = [entry for entry in FOLDER.iterdir() if entry.is_file()]
 
@@ -177,6 +180,42 @@ def test_a_start_that_compiles_reports_it_and_no_problem(tmp_path):
             assert len(talk.play(480).sound) == 480
     finally:
         server.stop()
+
+
+def test_a_start_that_compiles_nothing_says_nothing(own, tmp_path):
+    again = Server(tmp_path / "again")
+    again.stop()
+    assert again.said == ""
+
+
+def test_a_page_opened_while_the_server_compiles_waits_and_then_plays(tmp_path):
+    environment = {"NUMBA_CACHE_DIR": str(incomplete_cache(tmp_path))}
+    server = Server(tmp_path / "errors", is_ready=False, **environment)
+    try:
+        with conversation(server) as talk:
+            assert talk.hear() == {"type": "compiling"}
+            assert json.loads(talk.socket.recv(timeout=START))["type"] == "hello"
+            talk.scene()
+            assert len(talk.play(480).sound) == 480
+    finally:
+        server.stop()
+    assert server.complaints == ""
+
+
+@pytest.mark.parametrize("plays", [False, True])
+def test_a_signal_ends_it_while_it_prepares_a_scene_or_compiles(tmp_path, plays):
+    environment = {} if plays else {"NUMBA_CACHE_DIR": str(tmp_path / "empty")}
+    server = Server(tmp_path / "errors", is_ready=plays, **environment)
+    with conversation(server) as talk:
+        if plays:
+            talk.until("hello")
+            talk.scene()
+            talk.say("scene", revision=9, case="brake")
+        time.sleep(1.0)
+        server.process.terminate()
+        server.process.wait(ENDS)
+    server.process.stdout.close()
+    assert server.complaints == ""
 
 
 def test_ctrl_c_ends_it_with_a_page_open(own):

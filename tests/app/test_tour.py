@@ -15,7 +15,6 @@ from stridula.app import now
 from stridula.app.instrument import RATE, Instrument
 from stridula.app.parts import Part
 from stridula.app.playable import playable
-from stridula.app.session import MOMENT
 from stridula.app.tour import STOPS, TourStop
 
 SECONDS = 3
@@ -45,7 +44,7 @@ def seen(title: str, compared: bool = False) -> Seen:
         parts = [one for _ in range(100) for one in instrument.play(RATE // 100)]
         assert all(isinstance(one, Part) for one in parts), "no stroke ends while one reads"
         found.shares.append(np.mean([one.chunk.status_shares.mean(axis=(0, 1)) for one in parts], axis=0))
-        variables, pressure = instrument.last_seconds.moment(MOMENT)
+        variables, pressure = instrument.last_seconds.moment(now.MOMENT)
         told = {name: now.said(values) for name, values in variables.items()}
         found.regimes.append(now.measured(1.0 / RATE, instrument.played.system.contact_names, told))
         found.levels.append(now.level_of(pressure))

@@ -176,7 +176,9 @@ def _sent(dice: random.Random) -> str | bytes:
 
 def _right(dice: random.Random) -> dict[str, Any]:
     """Return a message that may be played."""
-    type = dice.choice((*["scene"] * 3, *["pull"] * 2, "listen", "restart", "repeat", "save", "map", "no map"))
+    type = dice.choice(
+        (*["scene"] * 3, *["pull"] * 2, "listen", "restart", "repeat", "save", "map", "no map", "hold map")
+    )
     words: dict[str, Any] = {"type": type}
     if type == "scene":
         case = dice.choice(PRESETS)
@@ -189,13 +191,13 @@ def _right(dice: random.Random) -> dict[str, Any]:
         words |= {"parts": dice.randint(1, 4), "samples": dice.choice((1, 4, 48, 480))}
     elif type == "listen":
         words["source"] = dice.choice(("pressure", "force", "acceleration"))
-    elif type == "repeat":
+    elif type in ("repeat", "hold map"):
         words["on"] = dice.random() < 0.5
     elif type == "save":
         words["format"] = dice.choice(("wav", "nc"))
     elif type == "map":
         x, y = dice.sample(_held(PRESETS[0]) if dice.random() < 0.8 else CONTROLS, 2)
-        words |= {"x": _side(x), "y": _side(y), "points": dice.randint(2, 24)}
+        words |= {"revision": dice.randint(0, 1000), "x": _side(x), "y": _side(y), "points": dice.randint(2, 24)}
     return words
 
 

@@ -10,19 +10,21 @@ from typing import Any
 
 # Greatest length of an answer [bytes].
 LONGEST = 1_000_000
+# Priorities of the two processes, both lower than that of the sound.
+QUICK, SLOW = 5, 10
 # Time for which the process is kept after the last page has closed [s], so that a page that is loaded again does not
 # start another one.
 REST = 10.0
 
 
 class Beside:
-    """The process that computes maps and linear theory for all pages in turn, while any page is open or may return."""
+    """Two processes that compute for all pages: one the present motion, the other linear theory and maps.
+
+    Rows of maps take seconds, the first one longer, and the present motion is reported every second.
+    """
 
     def __init__(self) -> None:
-        self._process: asyncio.subprocess.Process | None = None
-        self._turn = asyncio.Lock()
-        self._closed = 0
-        self._rest: asyncio.TimerHandle | None = None
+        self._quick, self._slow = InTurn(QUICK), InTurn(SLOW)
 
     async def ask(self, what: str, **words: Any) -> Any:
         """Return the answer to a question, asked in turn, or None if the last page closes meanwhile.
@@ -34,6 +36,37 @@ class Beside:
         **words
             Arguments of the function of that name in `beside_worker.ANSWERS`.
         """
+        return await (self._quick if what == "now" else self._slow).ask(what, **words)
+
+    def close(self) -> None:
+        """Forget all questions, as no page is open: kill a process that computes, one that rests a little later."""
+        self._quick.close()
+        self._slow.close()
+
+    async def end(self) -> None:
+        """Kill the processes and wait for their ends."""
+        await self._quick.end()
+        await self._slow.end()
+
+
+class InTurn:
+    """A process that answers questions in turn, while any page is open or may return.
+
+    Parameters
+    ----------
+    niceness : int
+        Its priority, lower than that of the server by this number.
+    """
+
+    def __init__(self, niceness: int) -> None:
+        self.niceness = niceness
+        self._process: asyncio.subprocess.Process | None = None
+        self._turn = asyncio.Lock()
+        self._closed = 0
+        self._rest: asyncio.TimerHandle | None = None
+
+    async def ask(self, what: str, **words: Any) -> Any:
+        """Return the answer to a question as `Beside.ask` does."""
         # A cancelled question ends here; otherwise it would start the process.
         await self._turn.acquire()
         # Once started, it is computed to its end, so that answers keep their order.
@@ -95,7 +128,6 @@ class Beside:
     async def _started(self) -> asyncio.subprocess.Process:
         if self._process is None or self._process.returncode is not None:
             pipe = asyncio.subprocess.PIPE
-            self._process = await asyncio.create_subprocess_exec(
-                sys.executable, "-m", "stridula.app.beside_worker", stdin=pipe, stdout=pipe, limit=LONGEST
-            )
+            command = (sys.executable, "-m", "stridula.app.beside_worker", str(self.niceness))
+            self._process = await asyncio.create_subprocess_exec(*command, stdin=pipe, stdout=pipe, limit=LONGEST)
         return self._process

@@ -10,8 +10,6 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Any
 
-# Lower priority than the sound.
-NICENESS = 10
 # Largest number of growing modes reported.
 MOST = 12
 
@@ -80,10 +78,10 @@ ANSWERS: dict[str, Callable[..., Any]] = {"regimes": regimes, "theory": theory, 
 
 
 def main() -> None:
-    """Answer questions until the input ends."""
+    """Answer questions until the input ends, with a priority that is lower by the first argument."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with contextlib.suppress(OSError, AttributeError):
-        os.nice(NICENESS)
+        os.nice(int(sys.argv[1]))
     # Heavy imports come after the priority has been lowered.
     from ..studies.task import use_one_thread
 

@@ -54,7 +54,7 @@ CONTROLS = (
         "Friction coefficient that must be overcome before the tip slips.",
     ),
     Control(
-        "contact.friction.kinetic", "Friction", "Kinetic friction", "", 1.0, 0.0, 2.0, 0.01,
+        "contact.friction.kinetic", "Friction", "Kinetic friction", "", 1.0, 0.01, 2.0, 0.01,
         "Friction coefficient while the tip slides.",
     ),
     Control(

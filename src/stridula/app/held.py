@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -9,6 +10,9 @@ from typing import Any
 from ..scenarios.errors import ScenarioError
 from .messages import Scene
 from .playable import PRESETS, Playable, playable
+
+# A number of an entry in a key.
+NUMBER = re.compile(r"\b(contacts\.|surfaces\.|drives\.|connections\.)\d+")
 
 
 @dataclass(frozen=True)
@@ -54,7 +58,7 @@ def held(wanted: Scene, last: Scene | None) -> Held:
     try:
         return Held(wanted, _playable(wanted), {}, [])
     except ScenarioError as error:
-        problems = list(error.problems)
+        problems = _together(error.problems)
     before = last.overrides if last is not None and is_of_one_case(wanted, last) else {}
     turned = [key for key, value in wanted.overrides.items() if before.get(key) != value]
     for key in turned:
@@ -74,13 +78,21 @@ def held(wanted: Scene, last: Scene | None) -> Held:
             more = found[0].model_copy(update={"overrides": {**found[0].overrides, key: wanted.overrides[key]}})
             found = more, _playable(more)
         except ScenarioError as error:
-            refused[key] = list(error.problems)
+            refused[key] = _together(error.problems)
     return Held(*found, refused, problems)
 
 
 def is_of_one_case(one: Scene, other: Scene) -> bool:
     """Return whether two scenes differ only in values."""
     return one.text == other.text and (one.text is not None or one.case == other.case)
+
+
+def _together(problems: Iterable[str]) -> list[str]:
+    """Return lines that differ only in the number of a contact or drive as one, with a ``*`` for the number."""
+    common: dict[str, list[str]] = {}
+    for line in problems:
+        common.setdefault(NUMBER.sub(r"\1*", line), []).append(line)
+    return [lines[0] if len(lines) == 1 else line for line, lines in common.items()]
 
 
 def _put_back(scene: Scene, before: Mapping[str, Any], keys: Iterable[str]) -> Scene:

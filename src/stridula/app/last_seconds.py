@@ -97,6 +97,11 @@ class LastSeconds:
         numbers = (len(CONTACT) + 4) * len(self.played.system.contacts) * self.rate
         return min(KEPT, MOST_NUMBERS / numbers)
 
+    @property
+    def steady(self) -> float:
+        """Time played since the last change [s]."""
+        return self._parts[-1].clock - self._changes[-1][0] if self._parts else 0.0
+
     def keep(self, part: Part, source: Source) -> None:
         """Keep a part in place of any kept for the same time, and discard those that are too old."""
         begins = part.clock - part.samples / self.rate

@@ -78,9 +78,10 @@ class Axis(_Message):
 
 
 class Map(_Message):
-    """Request for a map of regimes around the played scenario."""
+    """Request for a map of regimes around the scenario that was played at a revision."""
 
     type: Literal["map"]
+    revision: Revision
     x: Axis
     y: Axis
     points: Annotated[int, Field(ge=2, le=24)] = 16
@@ -92,7 +93,14 @@ class NoMap(_Message):
     type: Literal["no map"]
 
 
-Message = Scene | Pull | Listen | Restart | Repeat | Save | Map | NoMap
+class HoldMap(_Message):
+    """Whether the map waits before its next row."""
+
+    type: Literal["hold map"]
+    on: bool
+
+
+Message = Scene | Pull | Listen | Restart | Repeat | Save | Map | NoMap | HoldMap
 _ADAPTER: TypeAdapter[Any] = TypeAdapter(Annotated[Message, Field(discriminator="type")])
 
 

@@ -98,14 +98,15 @@ def packed(part: Part) -> bytes:
     track, contacts, place of the first tip. Then in single precision the sound; for the pictures normal force,
     tangential force, status, place of the tip and its velocity; height of the tip, displacements of the nodes,
     deflections of the track, status and travel of each contact. All are little-endian, with a zero at the end if their
-    number is odd, so that parts can be joined.
+    number is odd, so that parts can be joined. Forces are those of all contacts together, and the status is the one in
+    which they carry most of their load; place and velocity are those of the first tip.
     """
     samples = part.samples
     thinned = THINNED if samples % THINNED == 0 else 1
     contact, shapes = part.chunk.contact, part.shapes
-    shares = part.chunk.status_share.reshape(-1, thinned, 3).mean(axis=1)
-    seen = [_means(contact["normal_force"], thinned), _means(contact["tangential_force"], thinned)]
-    seen += [dominant_status(shares)]
+    forces = [part.chunk.contacts[name].sum(axis=0) for name in ("normal_force", "tangential_force")]
+    shares = _together(part.chunk).reshape(-1, thinned, 3).mean(axis=1)
+    seen = [*(_means(force, thinned) for force in forces), dominant_status(shares)]
     seen += [contact["contact_position"][thinned - 1 :: thinned] - shapes.place, contact["slip_velocity"][::thinned]]
     counts = [samples, samples // thinned, len(shapes.slider), len(shapes.track), len(shapes.contacts)]
     head = np.array([part.revision, part.clock, part.stroke, *counts, shapes.place], dtype="<f8")
@@ -118,6 +119,14 @@ def packed(part: Part) -> bytes:
 def contacts_now(live: LiveMarch, chunk: LiveChunk) -> Array:
     """Return the status of each contact at the end of a chunk, and the travel of its track [m]."""
     return np.stack([dominant_status(chunk.status_shares[:, -1]), live.passed], axis=1)
+
+
+def _together(chunk: LiveChunk) -> Array:
+    """Return the share of each status over the samples, weighted by the load of each contact."""
+    loads = np.maximum(chunk.contacts["normal_force"], 0.0)
+    total = loads.sum(axis=0)
+    loads = np.where(total > 0.0, loads, 1.0)
+    return np.asarray(np.einsum("ct,cts->ts", loads, chunk.status_shares) / loads.sum(axis=0)[:, None])
 
 
 def _means(values: Array, count: int) -> Array:

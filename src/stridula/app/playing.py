@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from copy import copy
 from dataclasses import dataclass, replace
 
@@ -103,13 +104,18 @@ class Playing:
         ValueError
             If the march refuses the scenario; then nothing is changed.
         """
-        is_same_origin = played.origin == self.played.origin
-        longer = self.longer if is_same_origin else None
+        longer = self.longer if played.origin == self.played.origin else None
         if longer is not None and played.scenario.step is None:
-            played = played.stepped(longer)
+            # The longer step may be beyond the limit of the changed scenario.
+            with suppress(ValueError):
+                return self._changed(played.stepped(longer), revision, longer)
+            longer = None
+        return self._changed(played, revision, longer)
+
+    def _changed(self, played: Playable, revision: int, longer: float | None) -> tuple[Playing, bool]:
         then = self.apart()
         what = (played.system, played.probes, played.scenario.scheme, played.scenario.step)
-        goes_on = is_same_origin and not self.ended
+        goes_on = played.origin == self.played.origin and not self.ended
         if goes_on:
             goes_on = then.live.change(*what)
         else:

@@ -6,15 +6,18 @@ import errno
 import gc
 import ipaddress
 import logging
+import os
 import socket
 import sys
 import threading
+import time
 import webbrowser
 from contextlib import suppress
 
 import uvicorn
 
 from ..checks import ArgumentError
+from ..integration.compiled_code import tell_of_compiling
 from ..studies.task import use_one_thread
 from .caller import Caller, is_news
 from .instrument import RATE, Instrument
@@ -24,15 +27,15 @@ from .server import create_app
 
 # Time to wait for pages when the server stops [s].
 GRACE = 2
-# Time after which compilation is announced [s].
-PATIENCE = 2.0
+# Interval at which the end of the server is looked for [s].
+SOON = 0.2
 # Host names that stand for all addresses of this machine.
 EVERYWHERE = ("0.0.0.0", "::")
 # An unused address and port.
 ELSEWHERE = ("192.0.2.1", 9)
 # Longest time for which a thread keeps the interpreter while another waits [s].
 HANDED_OVER = 0.001
-COMPILING = "stridula: getting ready; the first start compiles, which takes a minute or two"
+COMPILING = "stridula: compiling, once for all later starts, which takes a minute or two; the page waits"
 
 
 def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
@@ -58,10 +61,6 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
         raise ArgumentError("host", "be an address of this machine, such as 127.0.0.1, unless --open is given", host)
     listening = _bound(host, port)
     use_one_thread()
-    _get_ready()
-    # Existing objects are permanent: searching them for garbage would interrupt the sound.
-    gc.collect()
-    gc.freeze()
     # Threads that prepare a change must not hold up the sound.
     sys.setswitchinterval(HANDED_OVER)
     address, *others = addresses(host, listening.getsockname()[1])
@@ -70,21 +69,27 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
     logging.getLogger("asyncio").setLevel(logging.ERROR)
     if opens_browser:
         threading.Timer(0.5, webbrowser.open, [address]).start()
+    ready = threading.Event()
+    threading.Thread(target=_get_ready, args=[ready], daemon=True).start()
+    running = server(is_open, ready)
+    threading.Thread(target=_end_at_last, args=[running], daemon=True).start()
     # Ctrl-C ends the server normally.
     with suppress(KeyboardInterrupt):
-        server(is_open).run(sockets=[listening])
+        running.run(sockets=[listening])
 
 
-def server(is_open: bool) -> uvicorn.Server:
+def server(is_open: bool, ready: threading.Event | None = None) -> uvicorn.Server:
     """Return the server of the page.
 
     Parameters
     ----------
     is_open : bool
         Whether other machines may connect.
+    ready : Event, optional
+        Set once the code is compiled, for which pages wait.
     """
     config = uvicorn.Config(
-        create_app(is_open),
+        create_app(is_open, ready),
         http=Caller,
         ws="websockets-sansio",
         ws_max_size=LARGEST,
@@ -100,11 +105,34 @@ def server(is_open: bool) -> uvicorn.Server:
     return uvicorn.Server(config)
 
 
-def _get_ready() -> None:
-    """Play a moment to compile the code, with a notice if that takes long, as it does the first time."""
-    notice = threading.Timer(PATIENCE, print, [COMPILING], {"file": sys.stderr, "flush": True})
-    notice.daemon = True
-    notice.start()
+def _end_at_last(running: uvicorn.Server) -> None:
+    """End the process some time after its server was told to end: threads that compile would keep it for minutes."""
+    while not running.should_exit:
+        time.sleep(SOON)
+    time.sleep(2 * GRACE)
+    os._exit(0)
+
+
+def _get_ready(ready: threading.Event) -> None:
+    """Play a moment of every kind of system, with a notice if that compiles its code, then set an event."""
+    told = threading.Event()
+
+    def tell() -> None:
+        if not told.is_set():
+            told.set()
+            print(COMPILING, file=sys.stderr, flush=True)
+
+    try:
+        with tell_of_compiling(tell):
+            _play_a_moment()
+        # Existing objects are permanent: searching them for garbage would interrupt the sound.
+        gc.collect()
+        gc.freeze()
+    finally:
+        ready.set()
+
+
+def _play_a_moment() -> None:
     # Cases with a force and with an imposed velocity, and changes of friction and of modes.
     for case in PRESETS[:3:2]:
         instrument = Instrument(playable(case, None, {}))
@@ -115,7 +143,6 @@ def _get_ready() -> None:
     # Cases with several contacts, coupled modes and a rigid track.
     for case in SYSTEMS:
         list(Instrument(playable(case, None, {})).play(RATE // 100))
-    notice.cancel()
 
 
 def addresses(host: str, port: int) -> list[str]:

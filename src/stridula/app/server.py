@@ -5,6 +5,7 @@ from __future__ import annotations
 import ipaddress
 import mimetypes
 import re
+import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from importlib.resources import files
@@ -41,10 +42,16 @@ HEADERS = {
 
 
 class Pages:
-    """The open pages and their shared process."""
+    """The open pages and their shared processes.
 
-    def __init__(self) -> None:
-        self.open, self.beside = 0, Beside()
+    Parameters
+    ----------
+    ready : Event or None
+        Set once the code is compiled; None if there is nothing to wait for.
+    """
+
+    def __init__(self, ready: threading.Event | None) -> None:
+        self.open, self.beside, self.ready = 0, Beside(), ready
 
     async def socket(self, socket: WebSocket) -> None:
         """Play for a page until it disconnects."""
@@ -58,7 +65,7 @@ class Pages:
         self.open += 1
         try:
             with suppress(WebSocketDisconnect):
-                await Session(socket, self.beside).run()
+                await Session(socket, self.beside, self.ready).run()
         finally:
             self.open -= 1
             if not self.open:
@@ -71,7 +78,7 @@ class Pages:
         await self.beside.end()
 
 
-def create_app(is_open: bool = False) -> ASGIApp:
+def create_app(is_open: bool = False, ready: threading.Event | None = None) -> ASGIApp:
     """Return the server of the page.
 
     Parameters
@@ -79,8 +86,10 @@ def create_app(is_open: bool = False) -> ASGIApp:
     is_open : bool, optional
         Whether other machines may connect; if not, requests must use a loopback name, so that no other page in the
         browser can reach the server under another name.
+    ready : Event, optional
+        Set once the code is compiled, for which pages wait.
     """
-    pages = Pages()
+    pages = Pages(ready)
     known = {entry.name: entry for entry in PAGE.iterdir() if entry.is_file()}
     known |= {f"{VENDOR}/{entry.name}": entry for entry in PAGE.joinpath(VENDOR).iterdir() if entry.is_file()}
 

@@ -21,11 +21,12 @@ from ..scenarios.errors import ScenarioError
 from ..version import __version__
 from . import controls, now
 from .beside import Beside
+from .bounds import bounds_of
 from .held import held, is_of_one_case
 from .instrument import RATE, Instrument
 from .last_seconds import KEPT
 from .maps import rows
-from .messages import Listen, Map, Message, NoMap, Pull, Repeat, Restart, Save, Scene, message_of
+from .messages import HoldMap, Listen, Map, Message, NoMap, Pull, Repeat, Restart, Save, Scene, message_of
 from .parts import THINNED, Stop, packed
 from .playable import Playable
 from .presets import presets
@@ -46,13 +47,15 @@ ANEW, PART = (1, 1, 2, 2), 480
 REPLAYED = 2.0
 # Linear theory is computed after this time without changes [s].
 PAUSE = 0.25
-# Interval at which the present motion is reported, and the shortest allowed one [s].
-MOMENT, SHORTEST = 1.0, 0.2
+# Shortest motion that is reported [s].
+SHORTEST = 0.2
 # Weight of earlier measurements in the speed of playing, as a machine may be busy at times; number of samples needed
 # for a new measurement.
 KNOWN, ENOUGH = 0.6, 48
 # A page that has not sent a first message is disconnected after this time [s].
 HURRY = 10.0
+# Interval at which a page that waits is looked after [s].
+SOON = 0.1
 # Largest number of messages that wait while one is answered.
 WAITING = 16
 # Codes of a socket that closed without a code, and of one whose page sent nothing.
@@ -67,11 +70,13 @@ class Session:
     socket : WebSocket
         Its connection.
     beside : Beside
-        The process that computes its maps and linear theory.
+        The processes that compute its headline, linear theory and maps.
+    ready : Event, optional
+        Set once the code is compiled, for which the page waits.
     """
 
-    def __init__(self, socket: WebSocket, beside: Beside) -> None:
-        self.socket, self.beside = socket, beside
+    def __init__(self, socket: WebSocket, beside: Beside, ready: threading.Event | None = None) -> None:
+        self.socket, self.beside, self.ready = socket, beside, ready
         self.instrument: Instrument | None = None
         self.scene: Scene | None = None
         self.source, self.repeats = "pressure", True
@@ -88,22 +93,15 @@ class Session:
         self._taken, self._made = 0.0, 0
         # Held while the scenario changes and while parts are played.
         self._changing = asyncio.Lock()
+        # Revision since which the keys of a map are those that are played, and whether its next row may begin.
+        self._keyed, self._maps = 0, asyncio.Event()
 
     async def run(self) -> None:
         """Answer the page until it disconnects, then raise WebSocketDisconnect."""
-        await self._tell(
-            "hello",
-            version=__version__,
-            rate=RATE,
-            kept=KEPT,
-            presets=presets(),
-            tour=[asdict(stop) for stop in STOPS],
-            regimes=REGIME_COLOURS,
-            **controls.turned_of_pair({}).described,
-        )
         try:
-            patience: float | None = HURRY
             self._do("listening", self._listening())
+            await self._greet()
+            patience: float | None = HURRY
             while True:
                 try:
                     heard = await asyncio.wait_for(self._messages.get(), patience)
@@ -119,6 +117,25 @@ class Session:
             self._gone.set()
             for task in self._tasks.values():
                 task.cancel()
+
+    async def _greet(self) -> None:
+        """Send the greeting once the code is compiled."""
+        if self.ready is not None and not self.ready.is_set():
+            await self._tell("compiling")
+            while not self.ready.is_set():
+                if self._gone.is_set():
+                    raise WebSocketDisconnect(GONE)
+                await asyncio.sleep(SOON)
+        await self._tell(
+            "hello",
+            version=__version__,
+            rate=RATE,
+            kept=KEPT,
+            presets=presets(),
+            tour=[asdict(stop) for stop in STOPS],
+            regimes=REGIME_COLOURS,
+            **controls.turned_of_pair({}).described,
+        )
 
     async def _listening(self) -> None:
         """Receive messages, also while one is answered, so that a page that leaves is noticed at once."""
@@ -190,6 +207,8 @@ class Session:
             other = await self._prepared(played)
             async with self._changing:
                 kept = self._kept(scene, clock.monotonic() - came)
+                if other is not None or self.instrument is None or _keys(self.instrument.played) != _keys(played):
+                    self._keyed = scene.revision
                 goes_on = await self._play(played, scene.revision, other, kept)
                 is_anew = await self._anew()
                 self.scene = found.scene
@@ -281,10 +300,10 @@ class Session:
 
     async def _now(self) -> None:
         """Report the present motion once a second."""
-        before = 0
+        before, headline = 0, now.Headline()
         with suppress(WebSocketDisconnect):
             while True:
-                await asyncio.sleep(MOMENT)
+                await asyncio.sleep(headline.pause)
                 async with self._changing:
                     instrument = self.instrument
                     if instrument is None or self._made < ENOUGH:
@@ -295,20 +314,23 @@ class Session:
                         self.speed = KNOWN * known + (1.0 - KNOWN) * now_played
                         await self._tell("speed", speed=self.speed)
                     self._taken, self._made = 0.0, 0
-                    if instrument.played_samples - before < MOMENT * RATE / 4:
+                    if instrument.played_samples - before < now.MOMENT * RATE / 4:
                         continue
                     before, revision = instrument.played_samples, instrument.revision
-                    variables, pressure = instrument.last_seconds.moment(MOMENT)
+                    last = instrument.last_seconds
+                    variables, pressure = last.moment(headline.seconds(last.steady))
                     system = instrument.played.system
-                if not variables or len(variables["damping_loss"]) < SHORTEST * RATE:
+                seconds = len(variables["damping_loss"]) / RATE if variables else 0.0
+                if seconds < SHORTEST or not headline.takes(seconds, revision):
                     continue
                 told = await asyncio.to_thread(_all_said, variables)
                 members = groups(system.contact_names, system.surface_names)
                 names = [system.contact_names[those[0]] for those in members]
                 found = await self.beside.ask("now", interval=1.0 / RATE, contacts=names, variables=told)
                 if found is not None:
-                    words = now.words(found, now.level_of(pressure))
-                    await self._tell("now", revision=revision, words=words, **found)
+                    named = headline.after(found, revision)
+                    words = now.words(named, now.level_of(pressure[-round(now.MOMENT * RATE) :]))
+                    await self._tell("now", revision=revision, words=words, **named)
 
     async def _pull(self, instrument: Instrument, pull: Pull) -> None:
         """Play the next parts; a page that requests more than real time must wait."""
@@ -367,22 +389,32 @@ class Session:
     async def _no_map(self, instrument: Instrument, message: NoMap) -> None:
         self._stop("map")
 
+    async def _hold_map(self, instrument: Instrument, message: HoldMap) -> None:
+        if message.on:
+            self._maps.clear()
+        else:
+            self._maps.set()
+
     async def _map(self, instrument: Instrument, message: Map) -> None:
-        played = instrument.played
-        known = {control.key for control in played.turned.controls} & set(played.turned.values)
+        # The page asks again once it has another case.
+        if message.revision < self._keyed:
+            return
+        played, known = instrument.played, _keys(instrument.played)
         for side in ("x", "y"):
             axis = getattr(message, side)
             if axis.key not in known or not axis.low < axis.high:
                 raise ArgumentError(side, "be a key of a number on the page, with low below high", axis.key)
         if message.x.key == message.y.key:
             raise ArgumentError("y", "be another key than x", message.y.key, got=f"{message.y.key!r} for both")
+        self._maps.set()
         self._do("map", self._rows(played, message))
 
     async def _rows(self, played: Playable, wanted: Map) -> None:
         with suppress(WebSocketDisconnect):
             async for row, found in rows(self.beside, played, wanted):
-                await self._tell("map row", x=wanted.x.key, y=wanted.y.key, row=row, regimes=found)
-            await self._tell("map done")
+                await self._tell("map row", revision=wanted.revision, row=row, regimes=found)
+                await self._maps.wait()
+            await self._tell("map done", revision=wanted.revision)
 
     async def _theory(self, played: Playable, revision: int) -> None:
         await asyncio.sleep(PAUSE)
@@ -409,6 +441,7 @@ ANSWERS_OF_WHAT_PLAYS: dict[type, Any] = {
     Restart: Session._restart,
     Save: Session._save,
     NoMap: Session._no_map,
+    HoldMap: Session._hold_map,
     Map: Session._map,
 }
 
@@ -438,6 +471,11 @@ def _changed(instrument: Instrument, played: Playable, revision: int, kept: int 
     return goes_on, speed
 
 
+def _keys(played: Playable) -> set[str]:
+    """Return the keys of the numbers that a map can vary."""
+    return {control.key for control in played.turned.controls} & set(played.turned.values)
+
+
 def _all_said(variables: dict[str, Array]) -> dict[str, Any]:
     return {name: now.said(values) for name, values in variables.items()}
 
@@ -463,6 +501,7 @@ def _described(instrument: Instrument, speed: float | None) -> dict[str, Any]:
         "title": played.scenario.title,
         "description": played.scenario.description,
         "values": played.turned.values,
+        "bounds": bounds_of(played),
         "turned": None if played.before is None else played.turned.described,
         "places": _places(played),
         "toml": played.toml,
@@ -470,6 +509,7 @@ def _described(instrument: Instrument, speed: float | None) -> dict[str, Any]:
         "source": instrument.name,
         **instrument.drawing.described,
         "modes": len(live.position),
+        "contact_count": len(played.system.contacts),
         "seconds_kept": instrument.last_seconds.seconds,
         "step": live.step,
         "steps": live.ratio,

@@ -81,7 +81,11 @@ def sources_of(system: System, probes: tuple[Probe, ...]) -> dict[str, Source]:
     driven = [*_others_on(system, track)] if sounds else []
     found = {"pressure": _with(SOURCES["pressure"], _silent(system, track))} if sounds and not driven else {}
     more = {f"probe {number}": _of_probe(probe, system) for number, probe in enumerate(probes[1:], 1)}
-    on_supports = {name: one for name, one in more.items() if one.name.startswith("Support force")}
+    # A string is heard through its bridge, and another body by the velocity of its wall.
+    first = [
+        [name for name, one in more.items() if one.name.startswith(word)] for word in ("Support force", "Velocity")
+    ]
+    radiating = {name: more[name] for name in next(filter(None, first), [])}
     known = TOGETHER if len(system.contacts) > 1 else SOURCES
     # The normal force on a point pressed on a belt is constant.
     is_on_track = system.contacts[0].path_body is not None
@@ -90,7 +94,7 @@ def sources_of(system: System, probes: tuple[Probe, ...]) -> dict[str, Source]:
         words = f" There is no sound pressure, as more than contacts along it drives the track: {listed(driven)}."
         forces["force"] = _with(forces["force"], words)
     acceleration = SOURCES["acceleration"] if is_on_track else TIP_ACCELERATION
-    return {**found, **on_supports, **forces, "acceleration": acceleration, **more}
+    return {**found, **radiating, **forces, "acceleration": acceleration, **more}
 
 
 def _of_probe(probe: Any, system: System) -> Source:

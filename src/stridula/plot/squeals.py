@@ -14,14 +14,14 @@ from matplotlib.patches import Patch
 
 from ..arrays import Array
 from ..checks import ArgumentError, instance
-from .colours import FAILED_COLOUR
+from .colours import FAILED_COLOUR, REGIME_COLOURS
 from .maps import draw_bound, edges, in_order, name_axis, places_of
 
 NEEDED = ("verdict", "fate", "tone_frequency", "normal_force_rms")
 # Colours of points without vibration, by state; the other points are coloured by frequency.
 QUIET = {
-    "stable": "#cfe8f5",
-    "no steady sliding": "#b9b9b9",
+    "stable": REGIME_COLOURS["stable sliding"],
+    "no steady sliding": REGIME_COLOURS["sticking"],
     "unstable, not reached": "#ffffff",
     "unstable, dies": "#f6d6e6",
     "failed": FAILED_COLOUR,

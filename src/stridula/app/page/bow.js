@@ -5,7 +5,7 @@ export const TICK = 50; // Interval of messages [ms].
 const SMOOTH = 0.5; // Weight of the hand's speed since the last tick in the played speed.
 const HARDER = 16; // Factor of the force over the height of the picture.
 const DIGITS = 3;
-const VELOCITIES = /^drives\.[^.]+\.velocity$|\.surface_velocity$|\.track\.velocity$/;
+const VELOCITIES = /^drives\.[^.]+\.velocity$|\.surface_velocity$|\.track\.velocity$|\.turning$/;
 const FORCES = /^drives\./;
 const NEWTONS = /^[GMkmµn]?N$/;
 

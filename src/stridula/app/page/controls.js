@@ -1,4 +1,16 @@
-// The controls, built in groups from their description by the server; those that a scenario lacks are hidden.
+// The controls, built from their description by the server: the main ones first, the others in groups behind *More*;
+// those that a scenario lacks are hidden.
+import { played } from "./bow.js";
+
+// The keys of the main controls: friction, the velocity or else the angle, and the force.
+export function mainKeys(numbers, values) {
+  const keys = numbers.map(({ key }) => key);
+  const { velocity, force } = played(numbers, values);
+  const friction = keys.find((key) => /friction\.(coefficient|static)$/.test(key));
+  const speed = velocity?.key ?? keys.find((key) => key.endsWith("slider.angle"));
+  return [friction, force?.key, speed].filter(Boolean);
+}
+
 export class Controls {
   constructor(form, hello, scene) {
     this.scene = scene;
@@ -12,18 +24,31 @@ export class Controls {
     const form = this.form;
     this.rows = new Map();
     this.values = undefined;
-    form.replaceChildren();
+    this.main = fieldset("Main controls");
+    this.arranged = "";
+    this.more = document.createElement("details");
+    this.more.id = "more";
+    this.more.open = localStorage.getItem("more") === "1";
+    this.more.addEventListener("toggle", () => localStorage.setItem("more", this.more.open ? "1" : "0"));
+    this.more.append(Object.assign(document.createElement("summary"), { textContent: "More" }));
     for (const group of hello.groups) {
-      const field = document.createElement("fieldset");
-      field.append(Object.assign(document.createElement("legend"), { textContent: group }));
-      // The most used controls come first.
-      for (const control of hello.controls.filter((one) => one.group === group)) field.append(this.#number(control));
-      for (const choice of hello.choices.filter((one) => one.group === group)) field.append(this.#choice(choice));
-      form.append(field);
+      const field = fieldset(group);
+      for (const control of hello.controls.filter((one) => one.group === group)) this.#number(control, field);
+      for (const choice of hello.choices.filter((one) => one.group === group)) this.#choice(choice, field);
+      this.more.append(field);
     }
+    form.replaceChildren(this.main, this.more);
   }
 
-  #number(control) {
+  // Put the main controls first, and the others into their groups, if others are the main ones now.
+  #arrange(main) {
+    if (this.arranged === String(main)) return;
+    this.arranged = String(main);
+    for (const [key, { row, field }] of this.rows) if (!main.includes(key)) field.append(row);
+    for (const key of main) this.main.append(this.rows.get(key).row);
+  }
+
+  #number(control, field) {
     const id = idOf(control.key);
     const row = document.createElement("div");
     row.className = "control";
@@ -55,20 +80,20 @@ export class Controls {
       if (number.value.trim() === "" || !Number.isFinite(Number(number.value))) this.show(this.values, true);
       else this.scene.values({ [control.key]: si(Number(number.value), control) });
     });
-    this.rows.set(control.key, { row, control, show: (value, again) => this.#show(value, slide, number, control, again) });
-    return row;
+    const show = (value, again, ends) => this.#show(value, slide, number, control, again, ends);
+    this.rows.set(control.key, { row, field, control, show });
   }
 
-  #show(value, slide, number, control, again) {
+  #show(value, slide, number, control, again, [low, high]) {
     const shown = Number((value / control.scale).toPrecision(7));
-    slide.min = Math.min(control.low, shown);
-    slide.max = Math.max(control.high, shown);
+    slide.min = Math.min(low, shown);
+    slide.max = Math.max(high, shown);
     if (again || document.activeElement !== slide || Math.abs(Number(slide.value) - shown) > control.step) slide.value = shown;
     if (again || document.activeElement !== number) number.value = shown;
     slide.setAttribute("aria-valuetext", `${shown} ${spoken(control.unit)}`.trim());
   }
 
-  #choice(choice) {
+  #choice(choice, field) {
     const id = idOf(choice.key);
     const row = document.createElement("div");
     row.className = "control";
@@ -83,27 +108,35 @@ export class Controls {
       if (![...select.options].some((one) => one.value === value)) select.append(new Option(value, value));
       select.value = value;
     };
-    this.rows.set(choice.key, { row, show });
-    return row;
+    this.rows.set(choice.key, { row, field, show });
   }
 
-  // Show the played values, given in SI.
-  show(values, again = false) {
+  // Show the played values, and the ends of sliders that they bound, given in SI.
+  show(values, again = false, bounds = this.bounds) {
     const before = this.values ?? {};
-    this.values = values;
-    for (const [key, { row, show }] of this.rows) {
+    const moved = JSON.stringify(bounds) !== JSON.stringify(this.bounds);
+    Object.assign(this, { values, bounds });
+    for (const [key, { row, show, control }] of this.rows) {
       row.hidden = !(key in values);
-      if (key in values && (again || values[key] !== before[key])) show(values[key], again);
+      if (key in values && (again || moved || values[key] !== before[key])) show(values[key], again, control && this.ends(control));
     }
+    this.#arrange(mainKeys(this.numbers(), values));
+    for (const field of this.more.querySelectorAll("fieldset")) field.hidden = !field.querySelector(".control:not([hidden])");
+  }
+
+  // The ends of a slider, in the unit shown.
+  ends({ key, low, high, scale }) {
+    return this.bounds?.[key]?.map((end) => Number((end / scale).toPrecision(7))) ?? [low, high];
   }
 
   // Show beside each control why it was refused, and its played value; return refused keys without a control.
   refuse(refused) {
-    for (const [key, { row, show }] of this.rows) {
+    for (const [key, { row, show, control }] of this.rows) {
       const words = row.querySelector(".refused");
       words.hidden = !(key in refused);
       words.textContent = (refused[key] ?? []).join("\n");
-      if (key in refused && key in (this.values ?? {})) show(this.values[key], true);
+      if (key in refused && this.more.contains(row)) this.more.open = true;
+      if (key in refused && key in (this.values ?? {})) show(this.values[key], true, control && this.ends(control));
     }
     return Object.keys(refused).filter((key) => !this.rows.has(key) || this.rows.get(key).row.hidden);
   }
@@ -111,6 +144,12 @@ export class Controls {
   numbers() {
     return [...this.rows.values()].filter(({ control, row }) => control && !row.hidden).map(({ control }) => control);
   }
+}
+
+function fieldset(legend) {
+  const field = document.createElement("fieldset");
+  field.append(Object.assign(document.createElement("legend"), { textContent: legend }));
+  return field;
 }
 
 function idOf(key) {

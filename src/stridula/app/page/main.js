@@ -4,10 +4,11 @@ import { Bow } from "./bow.js";
 import { Controls } from "./controls.js";
 import { Gallery } from "./gallery.js";
 import { RegimeMap } from "./map.js";
+import { levelWords } from "./level.js";
 import { Loop } from "./loop.js";
 import { parts } from "./parts.js";
 import { reading } from "./note.js";
-import { Pictures, STATES } from "./pictures.js";
+import { Pictures } from "./pictures.js";
 import { Recorder } from "./recorder.js";
 import { Scene } from "./scene.js";
 import { Slots } from "./slots.js";
@@ -34,6 +35,9 @@ const MARGIN = 1.1; // and the margin left to other work then.
 const TOO_SLOW = 0.5; // Seconds played per second below which maps are computed only on request.
 const PREPARES = 400; // Time after which a scene is shown as being prepared [ms].
 const LOWEST = 20; // Lowest frequency of a note [Hz].
+const LISTENING = "listening …"; // Until the first regime is found.
+const PREPARING = "Preparing: computing meshes, modes and the initial state. Playing starts when they are ready.";
+const COMPILING = "Compiling the simulation for this machine, once, which takes a minute or two. Playing starts by itself.";
 const LONGEST = 60000; // Largest scenario accepted from the user [bytes].
 const LONG = 5; // Time of drawing above which every other frame is skipped [ms].
 const stats = { drawing: 0, revision: 0, played: 0, samples: 0, frames: 0, fps: 0, dropouts: 0, latency: null, latencies: [], connected: false, level: 0, peak: 0 };
@@ -44,7 +48,6 @@ let slowest = 1; // Seconds needed to play one second, 1 if it keeps up with the
 let revision = 0;
 let begun = 0; // The revision at which the motion began.
 let heardLast; // Source of the last part.
-let pitch = null; // Pitch of the present motion [Hz], null if it has none.
 let mode = "live";
 let skipped = false;
 let badLink = false;
@@ -59,6 +62,7 @@ stream.onmessage = ({ data }) => {
 
 function told(message) {
   const answers = {
+    compiling: () => prepares(COMPILING),
     hello: () => welcome(message),
     scene: () => shown(message),
     refused: () => refused(message),
@@ -71,7 +75,7 @@ function told(message) {
     now: () => message.revision >= begun && goesOn(message),
     speed: () => follow(message.speed),
     "map row": () => map?.take(message),
-    "map done": () => map?.done(),
+    "map done": () => map?.done(message),
   };
   answers[message.type]?.();
 }
@@ -101,13 +105,19 @@ async function welcome(message) {
 }
 
 function send() {
+  map.leave();
   revision += 1;
   moves.set(revision, performance.now());
   if (moves.size > 200) moves.delete(moves.keys().next().value);
   sent.set(revision, structuredClone(scene.now));
   say({ type: "scene", revision, ...scene.now, case: scene.now.case || "squeal" });
   clearTimeout(send.timer);
-  send.timer = setTimeout(() => ($("preparing").hidden = false), PREPARES);
+  send.timer = setTimeout(() => prepares(PREPARING), PREPARES);
+}
+
+function prepares(words) {
+  write("preparing", words);
+  $("preparing").hidden = false;
 }
 
 function answered(number) {
@@ -141,7 +151,7 @@ function shown(message) {
   badLink = false;
   if (!message.goes_on) {
     begun = message.revision;
-    goesOn({ words: "" });
+    goesOn({ words: LISTENING });
     pictures.clear();
     write("theory", "");
     write("stroke", "");
@@ -151,16 +161,19 @@ function shown(message) {
   }
   write("kept", `the last ${Number(message.seconds_kept.toPrecision(2))} s`);
   build(message.turned);
-  controls.show(message.values);
+  controls.show(message.values, false, message.bounds);
   scene.places = message.places;
   offer(message);
   if (message.goes_on) follow(message.speed);
   else keepUp(message.speed);
   putBack(message);
   pictures.describe(message);
-  map.follow();
+  map.follow(message.revision);
   bow.follow();
   showCase(message);
+  const many = message.contact_count > 1 ? message.contact_count : 0;
+  write("force-words", many ? `sum of ${many} contacts` : "");
+  write("portrait-words", many ? `of the first of ${many} contacts` : "");
   showToml();
   write("numbers", `${message.modes} modes, ${message.steps} steps of ${short(1e6 * message.step)} µs per sample${message.longer ? ", twice as long as usual, to keep up with the sound" : ""}. `);
 }
@@ -182,11 +195,13 @@ function offer({ sources: offered, source }) {
   showSource();
 }
 
-// The present motion as text, its pitch and its note.
+// The present motion as text, with its note if it is a tone.
 function goesOn({ words, regime, frequency }) {
-  pitch = frequency;
+  const isTone = ["squeal", "stick-slip"].includes(regime) && frequency >= LOWEST;
+  const { note, mode } = reading(isTone ? frequency : null, pictures.modes);
   write("now", words);
-  write("note", ["squeal", "stick-slip"].includes(regime) && frequency >= LOWEST ? reading(frequency, pictures.modes) : "");
+  write("note", note);
+  write("mode", mode);
 }
 
 function paceOf(speed) {
@@ -277,7 +292,9 @@ function showToml() {
 function refused(message) {
   answered(message.revision);
   putBack(message);
-  if (described) showCase(described);
+  if (!described) return;
+  showCase(described);
+  map.follow(described.revision);
 }
 
 function problem(lines) {
@@ -340,6 +357,7 @@ function heard(data) {
   stats.reduction = data.reduction;
   if (silence() || !sources) return;
   const { full_scale: fullScale, unit } = sources[$("source").value];
+  explainLevel(data.gain);
   const factor = data.gain * 10 ** (Number($("volume").value) / 20);
   $("level-out").textContent = `${Math.round(decibels(data.peak))} dB, limited by ${Math.round(-decibels(data.reduction))} dB`;
   $("scale-out").textContent = `full scale ${Number((fullScale / factor).toPrecision(2))} ${unit}`;
@@ -369,12 +387,20 @@ function showSource() {
 
 function listen() {
   if (!sources) return;
-  const { words, full_scale: fullScale, unit } = sources[$("source").value];
-  const levelled = $("levelled").checked;
-  $("source-words").textContent = `${words} 0 dB: ${levelled ? "the loudest sound of the last 4 s is 3 dB below full scale" : `${fullScale} ${unit} is full scale`}.`;
+  explainLevel(1);
   $("volume-out").textContent = `${$("volume").value} dB`;
-  sound.volume(Number($("volume").value), levelled);
+  sound.volume(Number($("volume").value), $("levelled").checked);
   loop.volume(Number($("volume").value));
+}
+
+// Whether the contact plays at true speed, also in the background.
+function isLive() {
+  return mode === "live" && $("speed").value === "1" && (sound.on || !document.hidden) && stats.connected;
+}
+
+function explainLevel(gain) {
+  const source = sources[$("source").value];
+  write("source-words", `${source.words} ${levelWords(source, $("levelled").checked, gain)}`);
 }
 
 function pace() {
@@ -382,6 +408,7 @@ function pace() {
   pictures.pace(slow);
   // A muted page in the background rests.
   const rests = mode === "paused" || (document.hidden && !sound.on);
+  recorder.hears(isLive(), performance.now() / 1000);
   stream.postMessage({ pace: { mode: rests ? "paused" : slow === 1 ? "live" : "slow", slow, own: Boolean($("speed").selectedOptions[0].dataset.own) } });
   if (mode === "paused" || slow !== 1) sound.flush();
   $("play").textContent = mode === "paused" ? "Play" : "Pause";
@@ -407,12 +434,14 @@ function record() {
   const begins = !recorder.on;
   $("record").setAttribute("aria-pressed", String(begins));
   $("record").textContent = begins ? "Stop" : "Record";
+  const now = performance.now() / 1000;
   if (begins) {
-    recorder.begin();
+    recorder.begin(now, isLive());
     $("unrecorded").hidden = true;
+    write("gaps", "");
     return;
   }
-  const bytes = recorder.end();
+  const bytes = recorder.end(now);
   $("recording").hidden = bytes === null;
   $("unrecorded").hidden = bytes !== null;
   if (bytes === null) {
@@ -421,6 +450,7 @@ function record() {
   }
   URL.revokeObjectURL($("recording").href);
   const href = URL.createObjectURL(new Blob([bytes], { type: "audio/wav" }));
+  write("gaps", recorder.missing ? `The recording lacks ${recorder.missing.toFixed(1)} s of sound that came too late.` : "");
   Object.assign($("recording"), { href, download: "stridula-recording.wav", textContent: `Save recording, ${recorder.seconds.toFixed(1)} s` });
   $("said").textContent = `recorded ${recorder.seconds.toFixed(1)} seconds`;
 }
@@ -507,6 +537,7 @@ $("drawer").addEventListener("click", () => {
   $("drawer").textContent = opens ? "Hide" : "Controls";
 });
 $("help").addEventListener("click", () => $("intro").showModal());
+$("problem-close").addEventListener("click", () => ($("problem").hidden = true));
 $("play").addEventListener("click", () => {
   mode = mode === "paused" ? "live" : "paused";
   pace();
@@ -568,6 +599,7 @@ document.addEventListener("keydown", (event) => {
   }
 });
 document.addEventListener("visibilitychange", pace);
+$("begin").addEventListener("click", () => sound.on || $("sound").click());
 $("intro").addEventListener("close", () => localStorage.setItem("visited", "1"));
 
 async function copied(text, what) {
@@ -582,8 +614,11 @@ async function copied(text, what) {
 // Texts beside the pictures change slowly enough to be read.
 setInterval(() => {
   if (pictures.much === undefined) return;
-  const shares = pictures.shares.map((share, i) => `${STATES[i]} ${Math.round(100 * share)} %`);
-  write("shares", shares.join(", "));
+  const shares = document.querySelectorAll("#shares .share");
+  pictures.shares.forEach((share, i) => {
+    const words = `${Math.round(100 * share)} %`;
+    if (shares[i].textContent !== words) shares[i].textContent = words;
+  });
   write("exaggeration", pictures.much ? `deflections ${pictures.much.toLocaleString("en")} times` : "");
 }, 250);
 
@@ -591,9 +626,6 @@ setInterval(() => {
   stats.fps = stats.frames;
   stats.frames = 0;
   $("fps").textContent = stats.fps;
-  // The strongest tone of the sound may be another than the pitch of the run, so it is named only without one.
-  const [word, tone] = pitch ? ["pitch", pitch] : ["strongest tone", pictures.tone];
-  $("tone").textContent = tone ? `${word} ${tone < 1000 ? `${Math.round(tone)} Hz` : `${(tone / 1000).toFixed(2)} kHz`}` : "";
 }, 1000);
 
 window.stridula = { fallBehind, follow, keepUp, loop, space, stats, late: () => sound.late, shares: () => pictures.shares, scene, slots, now: () => described };

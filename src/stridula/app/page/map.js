@@ -1,26 +1,35 @@
 // The map of regimes around the played scenario, and its cross-hair.
 import { si } from "./controls.js";
 import { paintAxes } from "./axes.js";
+import { played } from "./bow.js";
+import { MapRequest } from "./request.js";
 
 const POINTS = 16;
-const HELD = 5000; // Time without a drop-out after which a suspended map continues [ms].
 const QUIET = 700; // Time without a change after which a map is computed [ms].
-const PATIENCE = 5000; // Time without a row after which the wait is explained [ms].
 // Signs that distinguish regimes without colours.
 const SIGNS = { "stable sliding": "", sticking: "–", "stick-slip": "/", squeal: "~", judder: "×", "off the track": "·" };
 
+// The first axes: the one coefficient of friction over angle or force, else velocity and force.
+export function axes(numbers, values) {
+  const keys = numbers.map((one) => one.key);
+  const { velocity, force } = played(numbers, values);
+  const [friction, angle] = ["friction.coefficient", "slider.angle"].map((end) => keys.find((key) => key.endsWith(end)));
+  const wanted = (friction ? [friction, angle ?? force?.key] : [velocity?.key, force?.key]).filter(Boolean);
+  return [...wanted, ...keys.filter((key) => !wanted.includes(key))].slice(0, 2);
+}
+
 export class RegimeMap {
   constructor(scene, controls, regimes, say) {
-    Object.assign(this, { scene, controls, regimes, say });
+    Object.assign(this, { scene, controls, regimes });
     this.canvas = document.getElementById("map");
     this.x = document.getElementById("map-x");
     this.y = document.getElementById("map-y");
     this.on = document.getElementById("map-on");
     this.words = document.getElementById("map-words");
-    this.cells = new Map();
+    this.request = new MapRequest(POINTS, say, (words) => (this.words.textContent = words));
     this.known = "";
-    for (const side of [this.x, this.y]) side.addEventListener("change", () => this.follow(true));
-    this.on.addEventListener("change", () => this.follow(true));
+    for (const side of [this.x, this.y]) side.addEventListener("change", () => this.follow(this.revision, 0));
+    this.on.addEventListener("change", () => this.follow(this.revision, 0));
     let moving = false;
     const go = (event) => {
       this.#go(event.offsetX, event.offsetY, moving);
@@ -46,24 +55,32 @@ export class RegimeMap {
     );
   }
 
-  // Update to a scenario: the keys to vary, and a new map unless only the cross-hair moved.
-  follow(at_once = false) {
+  // Update to what plays at a revision: the keys to vary, and a new map unless only the cross-hair moved.
+  follow(revision, delay = QUIET) {
+    this.revision = revision;
     const numbers = this.controls.numbers();
-    this.#offer(this.x, numbers, "contact.friction.coefficient", 0);
-    this.#offer(this.y, numbers, "slider.angle", 1);
+    const [across, up] = axes(numbers, this.controls.values);
+    this.#offer(this.x, numbers, across);
+    this.#offer(this.y, numbers, up);
     const [a, b] = [this.side("x"), this.side("y")];
     if (!a || !b) return;
     const others = Object.entries(this.controls.values).filter(([key]) => key !== a.key && key !== b.key);
     const wanted = JSON.stringify([a.key, b.key, a.low, a.high, b.low, b.high, others, this.on.checked]);
     if (wanted === this.known) return;
     this.known = wanted;
-    this.cells.clear();
+    this.request.drop();
     this.words.textContent = this.slow && !this.on.checked ? "computed only on request: this system is slow" : "";
-    this.say({ type: "no map" });
-    clearTimeout(this.timer);
-    this.pending = null;
     if (!this.on.checked) return;
-    this.timer = setTimeout(() => this.#ask(a, b), at_once ? 0 : QUIET);
+    const axis = ({ key, control, low, high }) => ({ key, low: si(low, control), high: si(high, control) });
+    if (a.key === b.key) this.words.textContent = "choose two different quantities";
+    else this.request.ask({ x: axis(a), y: axis(b) }, revision, delay);
+  }
+
+  // A change is on its way: a request around this setting must not be sent any more.
+  leave() {
+    if (!this.request.waits) return;
+    this.request.drop();
+    this.again();
   }
 
   // Slow systems are not computed hundreds of times except on request.
@@ -73,14 +90,8 @@ export class RegimeMap {
     this.on.checked = !slow;
   }
 
-  // Suspend the computation of a map in favour of the sound.
   hold() {
-    if (!this.pending) return;
-    const [a, b] = this.pending;
-    this.say({ type: "no map" });
-    this.words.textContent = "suspended in favour of the sound";
-    clearTimeout(this.timer);
-    this.timer = setTimeout(() => this.#ask(a, b), HELD);
+    this.request.hold();
   }
 
   again() {
@@ -91,42 +102,29 @@ export class RegimeMap {
     const control = this.controls.numbers().find((one) => one.key === this[name].value);
     if (!control) return null;
     const value = this.controls.values[control.key] / control.scale;
+    // Two axes that bound each other would move each other's ends.
+    const both = [this.x, this.y].every(({ value: key }) => key in (this.controls.bounds ?? {}));
+    const [least, most] = both ? [control.low, control.high] : this.controls.ends(control);
     // The sense of motion that is played.
-    const [low, high] = control.low < 0 ? (value < 0 ? [control.low, 0] : [0, control.high]) : [control.low, control.high];
+    const [low, high] = least < 0 ? (value < 0 ? [least, Math.min(0, most)] : [0, most]) : [least, most];
     return { key: control.key, control, low: Math.min(low, value), high: Math.max(high, value) };
   }
 
-  #offer(select, numbers, first, other) {
+  #offer(select, numbers, first) {
     const keys = numbers.map((one) => one.key);
     if (JSON.stringify(keys) === select.dataset.keys) return;
-    const chosen = keys.includes(select.value) ? select.value : keys.includes(first) ? first : keys[other];
+    const chosen = keys.includes(select.value) ? select.value : first;
     select.replaceChildren(...numbers.map((one) => new Option(one.label, one.key)));
     select.value = chosen;
     select.dataset.keys = JSON.stringify(keys);
   }
 
-  #ask(a, b) {
-    if (a.key === b.key) {
-      this.words.textContent = "choose two different quantities";
-      return;
-    }
-    const axis = ({ key, control, low, high }) => ({ key, low: si(low, control), high: si(high, control) });
-    this.words.textContent = "computing";
-    this.pending = [a, b];
-    this.say({ type: "map", x: axis(a), y: axis(b), points: POINTS });
-    const wait = "computing the first row; the first map of all compiles code, which takes up to a minute";
-    this.timer = setTimeout(() => (this.words.textContent = wait), PATIENCE);
+  take(row) {
+    this.request.take(row);
   }
 
-  take({ row, regimes }) {
-    clearTimeout(this.timer);
-    this.cells.set(row, regimes);
-    this.words.textContent = `${Math.round((100 * this.cells.size) / POINTS)} % computed`;
-  }
-
-  done() {
-    this.pending = null;
-    this.words.textContent = "runs of up to 1 s from the start";
+  done(map) {
+    this.request.done(map);
   }
 
   #frame() {
@@ -162,7 +160,7 @@ export class RegimeMap {
     const { clientWidth, clientHeight } = this.canvas;
     const sides = [this.side("x"), this.side("y")];
     // Redrawn after a change.
-    const shown = JSON.stringify([clientWidth, clientHeight, scale, colours.line, this.cells.size, this.known, sides, this.controls.values]);
+    const shown = JSON.stringify([clientWidth, clientHeight, scale, colours.line, this.request.cells.size, this.known, sides, this.controls.values]);
     if (shown === this.shown) return;
     this.shown = shown;
     if (this.canvas.width !== Math.round(clientWidth * scale) || this.canvas.height !== Math.round(clientHeight * scale)) {
@@ -177,14 +175,14 @@ export class RegimeMap {
     const [a, b] = sides;
     if (!a || !b) return;
     const [w, h] = [width / POINTS, height / POINTS];
-    for (const [row, regimes] of this.cells) {
+    for (const [row, regimes] of this.request.cells) {
       regimes.forEach((name, column) => {
         const [x, y] = [left + column * w, top + height - (row + 1) * h];
         draw.fillStyle = this.regimes[name] ?? colours.panel;
         draw.fillRect(x, y, w + 0.5, h + 0.5);
-        draw.fillStyle = "#1b1f24";
+        draw.fillStyle = isDark(this.regimes[name]) ? "#ffffff" : "#1b1f24";
         draw.textAlign = "center";
-        draw.globalAlpha = 0.55;
+        draw.globalAlpha = 0.7;
         if (w > 9 && h > 9) draw.fillText(SIGNS[name] ?? "?", x + w / 2, y + h / 2 + 4);
         draw.globalAlpha = 1;
       });
@@ -207,4 +205,9 @@ export class RegimeMap {
       draw.stroke();
     }
   }
+}
+
+function isDark(colour = "#000000") {
+  const [red, green, blue] = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+  return 0.299 * red + 0.587 * green + 0.114 * blue < 120;
 }

@@ -18,13 +18,13 @@ export function modeOf(frequency, modes) {
   return nearest !== null && away(nearest) <= NEAR ? nearest : null;
 }
 
-// Note and mode as text, empty without a tone.
+// Note and mode as texts, empty without a tone.
 export function reading(frequency, modes) {
-  if (!(frequency > 0)) return "";
+  if (!(frequency > 0)) return { note: "", mode: "" };
   const { name, cents } = noteOf(frequency);
   const off = cents === 0 ? "" : ` ${cents > 0 ? "+" : "−"}${Math.abs(cents)} cents`;
   const mode = modeOf(frequency, modes);
-  return `${name}${off}${mode ? `, near the growing mode at ${pitch(mode.frequency)}` : ""}`;
+  return { note: `${name}${off}`, mode: mode ? `near the growing mode at ${pitch(mode.frequency)}` : "" };
 }
 
 function pitch(frequency) {

@@ -26,6 +26,7 @@ export class Pictures {
     this.spectrogram = new Spectrogram();
     this.modes = [];
     this.slow = 1;
+    this.drawnSince = 0;
     this.exaggeration = 0;
     this.theme();
   }
@@ -40,23 +41,24 @@ export class Pictures {
 
   // Add a part.
   take({ head, values }) {
-    const [, clock, stroke, samples, seen, nodes, points, contacts, place] = head;
+    const [revision, clock, stroke, samples, seen, nodes, points, contacts, place] = head;
     let at = 0;
     const next = (count) => values.subarray(at, (at += count));
     const sound = next(samples);
     const [force, , state, moved, speed] = [0, 1, 2, 3, 4].map(() => next(seen));
     const [height] = next(1);
     this.history.take({ clock, stroke, place, interval: samples / seen / RATE }, [force, state, moved, speed]);
-    this.shapes = { place, height, slider: next(2 * nodes), track: next(points), contacts: next(2 * contacts) };
-    if (this.slow === 1) this.#hear(sound);
+    const shapes = { place, height, slider: next(2 * nodes), track: next(points), contacts: next(2 * contacts) };
+    // Parts of the system before are still heard, but have other shapes.
+    if (revision >= this.drawnSince) this.shapes = shapes;
+    this.#hear(sound);
   }
 
   describe(scene) {
     // A new system starts a new picture.
     const known = JSON.stringify([scene.lines, scene.track, scene.drawn]);
     if (known !== this.known) this.frame = new Frame();
-    if (this.scene && drawnAs(scene) !== drawnAs(this.scene)) this.shapes = null;
-    else if (scene.lines && this.shapes && this.shapes.slider.length !== expected(scene)) this.shapes = null;
+    if (!this.scene || kindOf(scene) !== kindOf(this.scene)) Object.assign(this, { shapes: null, drawnSince: scene.revision });
     this.known = known;
     this.scene = scene;
     this.canvases.beams.hidden = Boolean(scene.drawn);
@@ -71,7 +73,6 @@ export class Pictures {
 
   pace(slow) {
     this.slow = slow;
-    this.spectrogram.forget();
   }
 
   // Shares of the states over the time shown.
@@ -92,7 +93,7 @@ export class Pictures {
     if (this.turn) this.timeline.draw(this.#begin("timeline"), this.history, this.slow, this.colours, STATES);
     else {
       this.phase.draw(this.#begin("phase"), this.history, this.slow, this.colours, STATES, this.dark);
-      this.spectrogram.draw(this.#begin("spectrogram"), this.slow === 1, this.modes, this.colours, this.dark);
+      this.spectrogram.draw(this.#begin("spectrogram"), this.modes, this.colours, this.dark);
     }
   }
 
@@ -170,7 +171,6 @@ export class Pictures {
   }
 
   #lines() {
-    if (this.shapes.slider.length !== expected(this.scene)) return;
     const [draw, width, height] = this.#begin("beams");
     const lines = placed(this.scene, this.shapes.slider);
     const much = this.frame.follow(lines, this.scene);
@@ -179,11 +179,6 @@ export class Pictures {
     drawLines(draw, this.scene, lines, this.shapes.contacts, at, this.much, this.colours, STATES, this.frame.extent);
     draw.fillStyle = this.colours.soft;
     draw.fillText(`stroke ${this.history.stroke}, ${short(1000 * this.frame.extent)} mm across`, 8, height - 6);
-  }
-
-  // Frequency of the strongest tone of the last sound [Hz], null if there is none or too little sound.
-  get tone() {
-    return this.spectrogram.tone;
   }
 
   // Update the spectrogram and the level.
@@ -196,12 +191,10 @@ export class Pictures {
   }
 }
 
-// Drawing of the bodies: in space, as lines, or as two beams.
-const drawnAs = ({ drawn, lines }) => (drawn ? "space" : lines ? "lines" : "beams");
-
-// Number of values in a part for the lines of a system.
-function expected({ lines }) {
-  return lines.reduce((sum, { places }) => sum + 2 * (places.length + 1), 0);
+// Shapes of one kind have the same numbers.
+function kindOf({ drawn, lines }) {
+  if (drawn) return drawn;
+  return lines ? `${lines.map(({ places }) => places.length)} points` : "beams";
 }
 
 function support(draw, x, y, colour) {

@@ -8,7 +8,7 @@ const SPAN = 0.25; // The level is that of the largest sample in several spans o
 const SPANS = 16;
 const RISE = 1; // Rise time of the gain, which falls faster [s].
 const FALL = 0.02;
-const MOST = 30; // Largest gain.
+export const MOST = 30; // Largest gain [dB].
 const FAINT = 1e-6; // Fainter sound is silence, during which the gain stays constant.
 
 // An automatic level that follows the sound slowly, with peaks just below the limiter.
@@ -36,7 +36,7 @@ class Level {
       this.largest[this.at] = 0;
       this.most = Math.max(...this.largest);
     }
-    const wanted = !this.on ? 1 : this.most > FAINT ? Math.min(MOST, CEILING / this.most) : this.gain;
+    const wanted = !this.on ? 1 : this.most > FAINT ? Math.min(10 ** (MOST / 20), CEILING / this.most) : this.gain;
     this.gain += (wanted < this.gain ? this.fall : this.rise) * (wanted - this.gain);
     return this.gain;
   }

@@ -2,6 +2,7 @@
 import { highPassed, joined } from "./samples.js";
 
 const LONGEST = 60; // [s]
+const CLOSE = 0.15; // Uncertainty of times [s], for parts come one by one.
 const HEADROOM = 10 ** (-1 / 20); // The largest sample is 1 dB below full scale.
 const LARGEST = 0x7fff;
 
@@ -9,6 +10,7 @@ export class Recorder {
   constructor(rate) {
     this.rate = rate;
     this.blocks = null;
+    this.since = null;
   }
 
   get on() {
@@ -20,8 +22,22 @@ export class Recorder {
     return this.kept / this.rate;
   }
 
-  begin() {
-    Object.assign(this, { blocks: [], kept: 0, sources: new Map() });
+  // Begin at a time [s], while sound is heard or not.
+  begin(now, hears) {
+    Object.assign(this, { blocks: [], kept: 0, sources: new Map(), heardFor: 0, since: null });
+    this.hears(hears, now);
+  }
+
+  // Sound is to be heard from a time on [s], or not.
+  hears(hears, now) {
+    if (this.since !== null) this.heardFor += now - this.since;
+    this.since = hears ? now : null;
+  }
+
+  // Time in which sound was to be heard and did not come [s], as far as it matters.
+  get missing() {
+    const missing = Math.min(this.heardFor, LONGEST) - this.seconds;
+    return missing > CLOSE ? missing : 0;
   }
 
   // Keep a part, to be multiplied by its scale, in the unit of its source; return whether there is room for more.
@@ -33,8 +49,9 @@ export class Recorder {
     return this.kept < LONGEST * this.rate;
   }
 
-  // Return the bytes of a WAV file, null if nothing was recorded.
-  end() {
+  // End at a time [s]; return the bytes of a WAV file, null if nothing was recorded.
+  end(now) {
+    this.hears(false, now);
     const { blocks, sources } = this;
     this.blocks = null;
     if (!this.kept) return null;

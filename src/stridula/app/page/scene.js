@@ -1,11 +1,12 @@
 // The scene as stored in the address bar: a case or a text, and values by key, with undo.
 const KEEP = 100;
+const FIRST = "glass"; // It sings within a moment.
 
 export class Scene {
   // Before another scene is played, onLeave ends movements in progress.
   constructor(onChange, onLeave = () => {}) {
     Object.assign(this, { onChange, onLeave });
-    this.now = { case: "squeal", text: null, overrides: {} };
+    this.now = { case: FIRST, text: null, overrides: {} };
     this.past = [];
     this.future = [];
     this.places = {}; // Keys for which a key with a * stands.

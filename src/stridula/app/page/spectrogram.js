@@ -1,17 +1,17 @@
 // The spectrogram of the sound, with its axes and the scale of its colours.
 import { inWords, Layer, paintAxes, ticks, told } from "./axes.js";
 import { joined } from "./samples.js";
-import { hann, spectrum, strongestTone } from "./spectrum.js";
+import { hann, spectrum } from "./spectrum.js";
 
 const RATE = 48000;
 const SIZE = 1024; // Samples of a spectrum.
 const HOP = 256; // Samples between spectra.
-const HEARD = 1 << 14; // Samples in which the strongest tone is sought: bins of 3 Hz.
 const HIGHEST = 12000; // Highest frequency shown [Hz].
 const DEEP = 60; // Level shown below the loudest [dB].
 const KEPT = 2000; // Number of spectra kept.
 const FORGETS = 0.995; // Factor by which the loudest level decays per spectrum.
 const [LEFT, RIGHT, ABOVE, BELOW] = [42, 56, 6, 32];
+const FIRST = ["The first spectrum appears", `after ${Math.round((1000 * SIZE) / RATE)} ms played.`];
 const BAR = 10; // Width of the scale of colours [px].
 
 export class Spectrogram {
@@ -31,7 +31,7 @@ export class Spectrogram {
 
   // Discard the samples so far after a discontinuity.
   forget() {
-    this.sound = this.heard = new Float32Array(0);
+    this.sound = new Float32Array(0);
   }
 
   // Redraw all in other colours.
@@ -42,7 +42,6 @@ export class Spectrogram {
 
   // Add the spectra of new sound.
   hear(sound) {
-    this.heard = joined([this.heard, sound]).slice(-HEARD);
     const all = joined([this.sound, sound]);
     let start = 0;
     for (; start + SIZE <= all.length; start += HOP) this.columns.push({ power: spectrum(all.subarray(start, start + SIZE), this.window) });
@@ -51,15 +50,10 @@ export class Spectrogram {
     if (this.columns.length > 2 * KEPT) this.columns = this.columns.slice(-KEPT);
   }
 
-  // Frequency of the strongest tone of the last sound [Hz], null if there is none or too little sound.
-  get tone() {
-    return this.heard.length === HEARD ? strongestTone(this.heard, RATE) : null;
-  }
-
-  draw([draw, width, height], hears, modes, colours, dark) {
+  draw([draw, width, height], modes, colours, dark) {
     const box = { left: LEFT, top: ABOVE, width: Math.max(1, width - LEFT - RIGHT), height: Math.max(1, height - ABOVE - BELOW) };
-    if (!this.columns.length && !hears) {
-      this.axes.draw(draw, width, height, [colours.line, "silent"], (paint) => inWords(paint, box, ["Slow motion is silent."], colours));
+    if (!this.columns.length) {
+      this.axes.draw(draw, width, height, [colours.line, "empty"], (paint) => inWords(paint, box, FIRST, colours));
       return;
     }
     this.#paint(box, dark);
