@@ -39,6 +39,25 @@ def check_hearable(system: System, surface_rate: float | str | None = None) -> N
         raise ArgumentError("surface_rate", "be left out, or all, for sound", surface_rate)
 
 
+def why_silent(system: System, surface_rate: float | str | None = None) -> str:
+    """Return the reason why a system cannot be heard, in words; empty if it can.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    surface_rate : float or str, optional
+        As for `check_hearable`.
+    """
+    if not hearable(system):
+        return "no body of the system radiates sound"
+    try:
+        check_hearable(system, surface_rate)
+    except ArgumentError as error:
+        return f"{error.argument} must {error.allowed}"
+    return ""
+
+
 def body_named(system: System, name: str) -> Any:
     """Return the body of a name among those that can be heard.
 
