@@ -110,6 +110,7 @@ _HOME = {
     "bars": ("show_progress",),
     "cycles": ("NoCycle", "limit_cycle", "lyapunov_exponent"),
     "acoustics": ("Air", "Bridge", "radiate", "radiation_damping", "radiation_efficiency"),
+    "reports": ("Report", "report"),
     "studies": (
         "CalibrationProgress",
         "Grid",
@@ -153,6 +154,7 @@ _PUBLIC = (
     "papers",
     "plot",
     "records",
+    "reports",
     "scenarios",
     "studies",
     "verification",

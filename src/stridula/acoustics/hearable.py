@@ -9,6 +9,9 @@ from ..system import System
 from .free_bodies import bodies_heard
 from .plane_sound import check_plane, plane_bodies
 
+# Ends of runs that can be heard.
+WHOLE = ("finished", "off the track")
+
 
 def hearable(system: System) -> list[Any]:
     """Return the bodies of a system whose sound `radiate` can compute.

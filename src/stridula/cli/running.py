@@ -19,9 +19,6 @@ from .exits import FAILED, INTERRUPTED, Stopped
 from .outputs import check_outputs, check_record
 from .warned import doubts_on_the_card
 
-# Ends of runs that can be heard.
-WHOLE = ("finished", "off the track")
-
 
 def run_scenario(
     name: str,
@@ -124,7 +121,7 @@ def _finish(
 
 def how_to_get_the_level(record: xr.Dataset, scenario: Scenario, out: str | None) -> str:
     """Return how the level of a run is found; nothing of one that failed."""
-    from ..acoustics.hearable import why_silent
+    from ..acoustics.hearable import WHOLE, why_silent
 
     if record.attrs["ended"] not in WHOLE:
         return ""

@@ -108,7 +108,13 @@ def si_tables(source: Any, overrides: Mapping[str, Any]) -> dict[str, Any]:
     if problems:
         raise ScenarioError(problems)
     # The scenario of a system has numbers in SI, and shares none.
-    return _with_lists(tables_in_si(tables)) if is_written(source) else tables
+    return in_si(tables) if is_written(source) else tables
+
+
+def in_si(written: dict[str, Any]) -> dict[str, Any]:
+    """Return tables as written in SI, with shared values in each body or contact."""
+    found: dict[str, Any] = _with_lists(tables_in_si(written))
+    return found
 
 
 def _with_lists(tables: Any) -> Any:
