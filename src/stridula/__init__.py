@@ -135,6 +135,7 @@ _HOME = {
         "regime_probability",
         "root_loci",
         "sensitivity",
+        "smallest_change",
         "squeal_survey",
         "sweep",
     ),

@@ -171,6 +171,7 @@ from .studies import orbit_diagram as orbit_diagram
 from .studies import regime_probability as regime_probability
 from .studies import root_loci as root_loci
 from .studies import sensitivity as sensitivity
+from .studies import smallest_change as smallest_change
 from .studies import squeal_survey as squeal_survey
 from .studies import sweep as sweep
 from .system import System as System

@@ -57,6 +57,7 @@ FEW = {
     "mode_sensitivity": {"parameters": ["coefficient"]},
     "mode_probability": {"samples": 2},
     "mode_surrogate": {"samples": 10, "checks": 10},
+    "smallest_change": {"most": 50, "points": 2},
     "report": {"run": False, "effects": False, "check": False},
     "calibrate": {"population": 5, "generations": 1, "duration": 1e-3},
 }

@@ -167,6 +167,13 @@ def test_growth_has_a_probability_for_uncertain_parameters():
     assert f"Any mode grows: {float(found['any_probability']):.3f}" in html
 
 
+def test_a_remedy_is_that_of_the_smallest_change():
+    remedies = {"connections.0.stiffness": (3.0, 5.0)}
+    html = st.report("belt", remedies=remedies, **QUICK).html
+    assert st.smallest_change("belt", remedies).attrs["verdict"] in unescape(html)
+    assert "Searched at the friction given." in html
+
+
 def test_another_parameter_may_be_varied():
     html = st.report("belt", key="stiffness", values=[3.0, 4.0, 5.0], units="N/m", **QUICK).html
     assert "Modes over stiffness" in html
@@ -183,6 +190,7 @@ def test_another_parameter_may_be_varied():
         ({"samples": 0}, "samples must be"),
         ({"uncertain": [1]}, "uncertain must be"),
         ({"overrides": {"stifness": 1.0}}, "did you mean"),
+        ({"remedies": {"stifness": (1.0, 5.0)}, "run": True}, "did you mean"),
     ],
 )
 def test_wrong_arguments_are_refused(arguments, words):
@@ -224,3 +232,31 @@ def test_the_line_of_the_limit_is_the_level_of_a_tone_in_its_band():
     there = np.interp(1995.26, *line.get_data())
     assert there == pytest.approx(float(st.third_octave_levels(sound, 100.0).sel(band=2000.0)), abs=0.05)
     assert line.get_xdata()[[0, -1]] == pytest.approx([1250.0, 16000.0])
+
+
+def test_the_command_writes_the_page_and_prints_its_name(stridula, tmp_path):
+    words = ("--no-run", "--no-effects", "--no-check", "--vary", "stiffness=3:5:3 N/m", "--set", "mass=2")
+    assert stridula("report", "belt", *words, "--out", "belt.html")[:2] == (0, "belt.html\n")
+    html = (tmp_path / "belt.html").read_text(encoding="utf-8")
+    assert rows(html)["bodies.block.mass"] == ["2 kg"]
+    assert "Modes over stiffness" in html
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("belt", "--out", "belt.pdf"), "--out must be a page of HTML"),
+        (("belt", "--out", "none/belt.html"), "no folder"),
+        (("belt", "belt", "belt", "--out", "a.html"), "NAME-OR-FILE must be one or two"),
+        (("bell", "--out", "a.html"), "did you mean 'belt'"),
+        (("belt", "--vary", "stiffness=3", "--out", "a.html"), "--vary must"),
+        (("belt", "--random", "mass", "--out", "a.html"), "--random must"),
+        (("belt", "--change", "stiffness=3", "--out", "a.html"), "--change must"),
+    ],
+)
+def test_the_command_refuses_in_one_line_and_writes_nothing(stridula, tmp_path, words, message):
+    code, out, err = stridula("report", *words)
+    assert (code, out) == (2, "")
+    assert message in err
+    assert len(err.splitlines()) == 1
+    assert list(tmp_path.iterdir()) == []

@@ -447,6 +447,12 @@ def report_(
         list[str] | None,
         typer.Option(metavar="KEY=LOW:HIGH", help="An uncertain parameter, as for stability; may be repeated."),
     ] = None,
+    change: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=LOW:HIGH", help="A parameter of the smallest change that silences it, in SI; may be repeated."
+        ),
+    ] = None,
     samples: Annotated[int, typer.Option(metavar="N", help="With --random: number of points.")] = 1000,
     status: Annotated[str | None, typer.Option(metavar="WORD", help="Status of contacts, as for stability.")] = None,
     velocity: SlipVelocity = None,
@@ -465,6 +471,7 @@ def report_(
             out,
             _pairs(set_ or []),
             vary=vary,
+            change=change or [],
             random=random or [],
             status=status,
             velocity=velocity,

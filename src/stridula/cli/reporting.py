@@ -8,7 +8,7 @@ from typing import Any
 
 from ..checks import ArgumentError
 from ..reports.reporting import check_page, report
-from .points import numbers_of
+from .points import numbers_of, ranges_of
 from .probability import distributions_of_texts
 from .stability import statuses, velocities
 
@@ -19,6 +19,7 @@ def report_scenarios(
     overrides: dict[str, Any],
     *,
     vary: str | None,
+    change: Sequence[str],
     random: Sequence[str],
     status: str | None,
     velocity: str | None,
@@ -38,9 +39,29 @@ def report_scenarios(
     check_page("--out", out)
     if vary is not None:
         options["key"], options["values"], options["units"] = numbers_of(vary)
+    if change:
+        options["remedies"] = _remedies(change)
     if random:
         options["uncertain"] = distributions_of_texts(random)
     options |= {"status": statuses(status), "velocity": velocities(velocity), "progress": sys.stderr.isatty()}
     page = report(*names, overrides=overrides, **options)
     page.save(out)
     return out
+
+
+def _remedies(texts: Sequence[str]) -> dict[str, tuple[float, float]]:
+    """Return lowest and highest value of each parameter given by ``KEY=LOW:HIGH``.
+
+    Raises
+    ------
+    ValueError
+        If a text has another form, or a unit.
+    """
+    try:
+        found = {key: (one.low, one.high) for key, one in ranges_of(list(texts)).items()}
+    except ArgumentError as error:
+        raise error.renamed("--change") from None
+    written = next((one for ends in found.values() for one in ends if isinstance(one, str)), None)
+    if written is not None:
+        raise ArgumentError("--change", "be KEY=LOW:HIGH with numbers in SI", written)
+    return {key: (float(low), float(high)) for key, (low, high) in found.items()}

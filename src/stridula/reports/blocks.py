@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Facts:
     """
 
     facts: Mapping[str, str]
-    kind: str = field(default="facts", init=False)
+    kind: ClassVar[str] = "facts"
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Table:
     columns: Mapping[str, Sequence[str]]
     title: str = ""
     strong: Sequence[bool] = ()
-    kind: str = field(default="table", init=False)
+    kind: ClassVar[str] = "table"
 
     @property
     def rows(self) -> list[tuple[tuple[str, ...], bool]]:
@@ -58,7 +58,7 @@ class Lines:
     """
 
     lines: Sequence[str]
-    kind: str = field(default="lines", init=False)
+    kind: ClassVar[str] = "lines"
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Picture:
 
     image: str = field(repr=False)
     words: str
-    kind: str = field(default="picture", init=False)
+    kind: ClassVar[str] = "picture"
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class Player:
 
     content: str = field(repr=False)
     words: str
-    kind: str = field(default="player", init=False)
+    kind: ClassVar[str] = "player"
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ from ..system import System
 
 # Keys of coefficients of friction in the tables of laws.
 COEFFICIENTS = ("coefficient", "static", "kinetic", "slope")
-FRICTION, RELATIVE = "friction", "friction / given"
+FRICTION, COEFFICIENT, RELATIVE = "friction", "friction.coefficient", "friction / given"
 # Values of the friction from none to twice that given.
 POINTS, MOST_FRICTION = 25, 2.0
 # Duration of systems, which have none [s].
@@ -54,6 +54,8 @@ class Options:
         Their unit.
     run, sound, effects, check : bool
         Whether there is a run, its sound, effects of parameters, and checks of step and cutoff.
+    remedies : mapping or None
+        Lowest and highest value of each parameter that may change to silence the system.
     uncertain : mapping or None
         Distribution of each uncertain parameter by key.
     samples : int
@@ -71,6 +73,7 @@ class Options:
     sound: bool
     effects: bool
     check: bool
+    remedies: Mapping[str, Any] | None
     uncertain: Mapping[str, Any] | None
     samples: int
     status: Status | None
@@ -158,7 +161,7 @@ class Design:
         # Friction of a single coefficient has it as the axis, any other one its share.
         first = numbers[0][1]
         if all(path[-1] == COEFFICIENTS[0] and number == first for path, number in numbers):
-            return "friction.coefficient", first * shares, "", lambda value: self.scaled(numbers, value / first)
+            return COEFFICIENT, first * shares, "", lambda value: self.scaled(numbers, value / first)
         return RELATIVE, shares, "", lambda share: self.scaled(numbers, share)
 
     def _with(self, key: str, units: str) -> Callable[[float], System]:

@@ -30,13 +30,14 @@ from .sections import (
     loci_section,
     modes_section,
     probability_section,
+    remedy_section,
     system_section,
 )
 
 ENDINGS = (".html", ".htm")
-# Sections that need no run, in the order of their computation; the run and its sound come before the last two.
+# Sections that need no run: those shown before it and its sound, and those shown after.
 BEFORE = (system_section, inputs_section, modes_section, loci_section)
-AFTER = (effects_section, probability_section, cutoff_section)
+AFTER = (effects_section, remedy_section, probability_section, cutoff_section)
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,7 @@ def report(
     sound: bool = True,
     effects: bool = True,
     check: bool = True,
+    remedies: Mapping[str, tuple[float, float]] | None = None,
     uncertain: Mapping[str, Any] | None = None,
     samples: int = 1000,
     status: Status | None = None,
@@ -112,6 +114,9 @@ def report(
         Unit of the values, SI if left out.
     run, sound, effects, check : bool, optional
         Whether the report has a run, its sound, effects of parameters, and the checks of step and cutoffs.
+    remedies : mapping, optional
+        Lowest and highest value, by key, of parameters that may change, as for `smallest_change`, so that no mode grows
+        at any friction up to that given; by default none.
     uncertain : mapping, optional
         Distribution of each uncertain parameter by key, as for `mode_probability`; by default none.
     samples : int, optional
@@ -159,6 +164,7 @@ def report(
         sound=sound,
         effects=effects,
         check=check,
+        remedies=None if remedies is None else by_key("remedies", remedies),
         uncertain=None if uncertain is None else by_key("uncertain", uncertain),
         samples=count("samples", samples),
         status=status,
@@ -184,19 +190,17 @@ def sections_of(design: Design, pictures: Pictures, show: Show) -> list[Section]
     show : callable
         Shows how much is done.
     """
-    total, watcher = float(len(BEFORE) + 3 + len(AFTER)), told_of_time(show)
-    found: list[Section] = []
-    for make in BEFORE:
+    makes = (*BEFORE, *AFTER)
+    total, watcher, found = float(len(makes) + 3), told_of_time(show), list[Section]()
+    # Wrong keys of options are refused before the run.
+    for make in makes:
         show(float(len(found)), total, f"{design.title}: {_words(make)}")
         found.append(make(design, pictures))
     record = run_of(design, watcher)
-    show(float(len(found) + 1), total, f"{design.title}: sound")
+    show(total - 2.0, total, f"{design.title}: sound")
     heard = sound_of(design, record)
-    found += [run_section(design, record, heard, pictures), sound_section(design, heard, pictures)]
-    for make in AFTER:
-        show(float(len(found)), total, f"{design.title}: {_words(make)}")
-        found.append(make(design, pictures))
-    return [*found, step_section(design, record, watcher)]
+    of_run = [run_section(design, record, heard, pictures), sound_section(design, heard, pictures)]
+    return [*found[: len(BEFORE)], *of_run, *found[len(BEFORE) :], step_section(design, record, watcher)]
 
 
 def _words(make: Any) -> str:
@@ -204,11 +208,11 @@ def _words(make: Any) -> str:
 
 
 def _titles(designs: Sequence[Design]) -> tuple[str, ...]:
-    """Return the titles of designs, with their names if they are the same."""
+    """Return the titles of designs, with the names of their files if they are the same."""
     titles = [design.title for design in designs]
     if len(set(titles)) == len(titles):
         return tuple(titles)
-    names = [design.name for design in designs]
+    names = [Path(design.name).stem for design in designs]
     if len(set(names)) < len(names):
         names = [f"{name}, {number}" for number, name in enumerate(names, 1)]
     return tuple(f"{title} ({name})" for title, name in zip(titles, names, strict=True))

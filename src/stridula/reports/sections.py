@@ -25,13 +25,16 @@ from ..studies.loci import critical_value, critical_values, root_loci
 from ..studies.loci_words import lines_of_changes
 from ..studies.mode_derivatives import mode_sensitivity
 from ..studies.probability_words import probability_columns, probability_lines
+from ..studies.smallest_changes import smallest_change
 from .blocks import Facts, Lines, Picture, Section, Table
-from .designs import Design
+from .designs import COEFFICIENT, Design
 
 # Largest number of rows of a table, and of lines for contacts.
 MOST_ROWS, MOST_CONTACTS = 30, 12
 # Texts about a scenario, which are no inputs, and largest number of entries of a list that are shown.
 TEXTS, MOST_NUMBERS = ("title", "description", "source"), 12
+# Lowest friction of the search for a remedy, relative to twice that given, and most changes tried.
+LEAST_FRICTION, MOST_CHANGES = 0.05, 600
 # Factor of the cutoffs on trial.
 HIGHER = 1.5
 
@@ -191,6 +194,27 @@ def effects_section(design: Design, pictures: Pictures) -> Section:
     if best is not None and bool(found["unstable"].any()):
         answers[title.lower()] = f"{columns['for less growth'][best]} {columns['parameter'][best]}"
     return Section(title, [*blocks, Lines(left_out)], answers)
+
+
+def remedy_section(design: Design, pictures: Pictures) -> Section:
+    """Return the smallest change with which no mode grows, up to the friction given where that is one number."""
+    title, asked = "What silences it", design.options
+    if asked.remedies is None:
+        return Section(title, [Lines(["No parameter was named that may change."])])
+    over = design.over()
+    known = over is not None and over[0] == COEFFICIENT
+    conditions = {COEFFICIENT: (over[1][-1] * LEAST_FRICTION, 0.5 * over[1][-1])} if known and over is not None else {}
+    found = smallest_change(
+        design.source, asked.remedies, conditions, overrides=asked.overrides, velocity=asked.velocity, most=MOST_CHANGES
+    )
+    names = ("given", "changed", "low", "high")
+    columns = {"parameter": [str(one) for one in found["parameter"].values]}
+    columns |= {name: [f"{one:.5g}" for one in found[name].values] for name in names}
+    columns["units"] = [str(one) for one in found["units"].values]
+    verdict = str(found.attrs["verdict"])
+    low, high = conditions.get(COEFFICIENT, (0.0, 0.0))
+    where = f"over {COEFFICIENT} from {low:.4g} to {high:.4g}" if conditions else "at the friction given"
+    return Section(title, [Lines([f"{verdict}.", f"Searched {where}."]), Table(columns)], {title.lower(): verdict})
 
 
 def probability_section(design: Design, pictures: Pictures) -> Section:
