@@ -16,6 +16,8 @@ from stridula.acoustics.squeals import squeal_words
 from stridula.analysis.mode_effects import effect_columns
 from stridula.analysis.record_card import facts_of
 from stridula.analysis.stability_words import mode_columns, verdict_lines
+from stridula.reports.designs import Options, design_of
+from stridula.reports.sections import Pictures, inputs_section
 from stridula.weighting import a_weighting
 
 QUICK = {"run": False, "effects": False, "check": False}
@@ -260,3 +262,11 @@ def test_the_command_refuses_in_one_line_and_writes_nothing(stridula, tmp_path, 
     assert message in err
     assert len(err.splitlines()) == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_stiffness_of_surfaces_is_one_of_an_area():
+    options = Options({}, None, "friction", None, "", False, False, False, False, None, None, 1, None, None)
+    (facts,) = inputs_section(design_of("brake", options), Pictures()).blocks
+    assert facts.facts["surfaces.0.stiffness.stiffness"].endswith(("N/m3", "GPa/m", "N/mm3"))
+    assert facts.facts["surfaces.0.stiffness.damping"].endswith("N s/m3")
+    assert facts.facts["connections.0.stiffness"].endswith("N/m")

@@ -36,7 +36,7 @@ from .sections import (
 
 ENDINGS = (".html", ".htm")
 # Sections that need no run: those shown before it and its sound, and those shown after.
-BEFORE = (system_section, inputs_section, modes_section, loci_section)
+BEFORE = (system_section, modes_section, loci_section)
 AFTER = (effects_section, remedy_section, probability_section, cutoff_section)
 
 
@@ -200,7 +200,8 @@ def sections_of(design: Design, pictures: Pictures, show: Show) -> list[Section]
     show(total - 2.0, total, f"{design.title}: sound")
     heard = sound_of(design, record)
     of_run = [run_section(design, record, heard, pictures), sound_section(design, heard, pictures)]
-    return [*found[: len(BEFORE)], *of_run, *found[len(BEFORE) :], step_section(design, record, watcher)]
+    last = [step_section(design, record, watcher), inputs_section(design, pictures)]
+    return [*found[: len(BEFORE)], *of_run, *found[len(BEFORE) :], *last]
 
 
 def _words(make: Any) -> str:

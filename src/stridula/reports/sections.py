@@ -26,6 +26,7 @@ from ..studies.loci_words import lines_of_changes
 from ..studies.mode_derivatives import mode_sensitivity
 from ..studies.probability_words import probability_columns, probability_lines
 from ..studies.smallest_changes import smallest_change
+from ..studies.values_by_key import units_of
 from .blocks import Facts, Lines, Picture, Section, Table
 from .designs import COEFFICIENT, Design
 
@@ -101,8 +102,8 @@ def _input_words(design: Design, value: Any, path: outline.Path) -> str:
         return "true" if value else "false"
     if isinstance(written, str):
         return written
-    units = outline.units(outline.node_at(path, design.si))
-    return f"{value:.6g} {units[0] if len(units) == 1 and units[0] != '1' else ''}".rstrip()
+    units = units_of(path, design.si)
+    return f"{value:.6g} {'' if units == '1' else units}".rstrip()
 
 
 def modes_section(design: Design, pictures: Pictures) -> Section:

@@ -145,7 +145,7 @@ def value_of(key: str, tables: dict[str, Any]) -> Value:
         raise ArgumentError("parameters", words, got=f"0 for {key}")
     if outline.is_whole(outline.node_at(paths[0], tables)):
         raise ArgumentError("parameters", "not be whole numbers", got=f"{brief(found[0])} for {key}")
-    return Value(key, tuple(paths), numbers, _units(paths[0], tables), tables)
+    return Value(key, tuple(paths), numbers, units_of(paths[0], tables), tables)
 
 
 def all_values(tables: dict[str, Any]) -> list[Value]:
@@ -177,7 +177,7 @@ def _are_equal(tables: dict[str, Any], word: str) -> bool:
     return len(numbers) > 1 and numbers[0] is not None and all(one == numbers[0] for one in numbers)
 
 
-def _units(path: Path, tables: dict[str, Any]) -> str:
+def units_of(path: Path, tables: dict[str, Any]) -> str:
     """Return the SI unit of a number, empty if it has none; a stiffness of surfaces is one of an area."""
     units = outline.units(outline.node_at(path, tables))
     if len(units) != 1:
