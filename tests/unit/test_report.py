@@ -237,7 +237,7 @@ def test_the_line_of_the_limit_is_the_level_of_a_tone_in_its_band():
 
 
 def test_the_command_writes_the_page_and_prints_its_name(stridula, tmp_path):
-    words = ("--no-run", "--no-effects", "--no-check", "--vary", "stiffness=3:5:3 N/m", "--set", "mass=2")
+    words = ("--no-run", "--no-effects", "--no-check", "--vary", "stiffness=3:5:3", "--set", "mass=2")
     assert stridula("report", "belt", *words, "--out", "belt.html")[:2] == (0, "belt.html\n")
     html = (tmp_path / "belt.html").read_text(encoding="utf-8")
     assert rows(html)["bodies.block.mass"] == ["2 kg"]
