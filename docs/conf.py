@@ -193,13 +193,14 @@ HOMES = {
     "bars": "Progress",
     "cycles": "Limit cycles",
     "acoustics": "Radiated sound",
+    "reports": "Reports",
     "scenarios": "Scenarios",
     "studies": "Studies of many runs",
 }
 
 
 # Beginnings of the homes of names on the second page.
-MEASURES = ("acoustics", "analysis", "bars", "cycles", "signals", "studies")
+MEASURES = ("acoustics", "analysis", "bars", "cycles", "reports", "signals", "studies")
 
 
 def write(path: Path, text: str) -> None:

@@ -121,6 +121,7 @@ _HOME = {
     "bars": ("show_progress",),
     "cycles": ("NoCycle", "limit_cycle", "lyapunov_exponent"),
     "acoustics": ("Air", "Bridge", "radiate", "radiation_damping", "radiation_efficiency"),
+    "reports": ("Report", "report"),
     "studies": (
         "CalibrationProgress",
         "Grid",
@@ -145,6 +146,7 @@ _HOME = {
         "regime_probability",
         "root_loci",
         "sensitivity",
+        "smallest_change",
         "squeal_survey",
         "sweep",
     ),
@@ -164,6 +166,7 @@ _PUBLIC = (
     "papers",
     "plot",
     "records",
+    "reports",
     "scenarios",
     "studies",
     "verification",

@@ -12,6 +12,7 @@ from . import integration as integration
 from . import papers as papers
 from . import plot as plot
 from . import records as records
+from . import reports as reports
 from . import scenarios as scenarios
 from . import studies as studies
 from . import verification as verification
@@ -140,6 +141,8 @@ from .records.files import load as load
 from .records.files import save as save
 from .records.plain import PlainRecord as PlainRecord
 from .records.repeated import repeat_cycle as repeat_cycle
+from .reports import Report as Report
+from .reports import report as report
 from .scenarios import Scenario as Scenario
 from .scenarios import ScenarioError as ScenarioError
 from .scenarios import list_scenarios as list_scenarios
@@ -173,6 +176,7 @@ from .studies import orbit_diagram as orbit_diagram
 from .studies import regime_probability as regime_probability
 from .studies import root_loci as root_loci
 from .studies import sensitivity as sensitivity
+from .studies import smallest_change as smallest_change
 from .studies import squeal_survey as squeal_survey
 from .studies import sweep as sweep
 from .system import System as System

@@ -16,6 +16,7 @@ NEEDED = {
     "meshio": ("meshes in files need", "files"),
     "soundfile": ("sound files need", "sound"),
     "matplotlib": ("figures need", "plot"),
+    "jinja2": ("reports need", "report"),
     "typer": ("the command line needs", "cli"),
     "rich": ("the command line needs", "cli"),
     "starlette": ("the page needs", "page"),

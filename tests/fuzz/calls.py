@@ -28,7 +28,7 @@ MODULES = {"": st, "analysis.": analysis, "plot.": plot, "scenarios.": scenarios
 # Results, which users do not call.
 RESULTS = {
     "Case", "CalibrationProgress", "Diverged", "DoubtfulValue", "Film", "Interrupted", "Modes", "NoCycle", "Progress",
-    "Scenario", "ScenarioError", "SoundFile", "SweepProgress",
+    "Report", "Scenario", "ScenarioError", "SoundFile", "SweepProgress",
 }  # fmt: skip
 # Functions of extras that are not installed.
 if find_spec("openturns") is None:
@@ -57,6 +57,8 @@ FEW = {
     "mode_sensitivity": {"parameters": ["coefficient"]},
     "mode_probability": {"samples": 2},
     "mode_surrogate": {"samples": 10, "checks": 10},
+    "smallest_change": {"most": 50, "points": 2},
+    "report": {"run": False, "effects": False, "check": False},
     "calibrate": {"population": 5, "generations": 1, "duration": 1e-3},
 }
 

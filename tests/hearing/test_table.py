@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from stridula.acoustics import sensation
+from stridula.acoustics.level_words import loudest
 from stridula.cli import hearing
-from stridula.cli.hearing import loudest, print_levels
+from stridula.cli.hearing import print_levels
 
 from .sounds import heard, tone
 

@@ -18,11 +18,11 @@ import pytest
 import scipy.io
 
 import stridula as st
+from stridula.analysis.doubts import doubts
 from stridula.analysis.record_card import facts_of as card
 from stridula.analysis.regimes import regime_of
 from stridula.bars import rich_bars
 from stridula.cli import running
-from stridula.cli.doubts import doubts
 from stridula.cli.running import how_to_get_the_level
 from stridula.plot.colours import REGIME_COLOURS
 from stridula.studies.measures import MEASURES, Column, Measure

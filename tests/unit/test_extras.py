@@ -26,6 +26,7 @@ PathFinder.find_spec = lambda name, *where: None if name.partition(".")[0] in {p
 IN_PYTHON = {
     "st.load_scenario('squeal')": "scenarios need pydantic",
     "st.sweep": "scenarios need pydantic",
+    "st.report": "scenarios need pydantic",
     "st.load('a.nc')": "records in files need h5netcdf",
     "st.save(xr.Dataset(), 'b.nc')": "records and meshes in files need h5py",
     "st.SolidMesh.read('a.msh')": "meshes in files need meshio",
@@ -59,6 +60,7 @@ for code in CODES:
 VERBS = {
     ("run", "squeal", "--plot", "a.png"): "figures need matplotlib",
     ("run", "squeal", "--wav", "a.wav"): "sound files need soundfile",
+    ("report", "belt", "--out", "a.html"): "reports need jinja2",
     ("verify",): "figures need matplotlib",
     ("app", "--no-browser"): "the page needs uvicorn",
 }
@@ -92,7 +94,7 @@ def test_in_python_the_error_names_the_extra(tmp_path):
 
 
 def test_the_command_line_reports_it_in_one_line_before_it_runs(tmp_path):
-    packages = {"matplotlib", "soundfile", "starlette", "uvicorn"}
+    packages = {"jinja2", "matplotlib", "soundfile", "starlette", "uvicorn"}
     done = run_without(packages, f"VERBS = {[*VERBS]!r}\n{EACH_VERB}", tmp_path)
     assert done.stderr.splitlines() == [f"stridula: {line(beginning)}" for beginning in VERBS.values()]
     assert done.stdout.split() == ["2"] * len(VERBS)
@@ -142,6 +144,6 @@ def test_the_extra_that_is_named_brings_the_package(package):
 
 
 def test_all_of_the_command_line_and_the_page_comes_with_all():
-    extras = ("cli", "files", "page", "plot", "scenarios", "sound")
+    extras = ("cli", "files", "page", "plot", "report", "scenarios", "sound")
     assert brought("all") == {name for extra in extras for name in brought(extra)}
     assert how_to_install("all") == 'pip install ".[all]" in the source folder'

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import stridula as st
-from stridula.cli.doubts import _of as doubts_of
+from stridula.analysis.doubts import _of as doubts_of
 
 STEEL, IRON = st.Material(2.1e11, 7800.0), st.Material(1.1e11, 7100.0, 0.26)
 BOXES = {"disc": ((0.03, 0.12), (0.0, 0.01)), "hat": ((0.03, 0.06), (0.01, 0.03))}

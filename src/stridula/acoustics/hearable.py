@@ -9,6 +9,9 @@ from ..system import System
 from .free_bodies import bodies_heard
 from .plane_sound import check_plane, plane_bodies
 
+# Ends of runs that can be heard.
+WHOLE = ("finished", "off the track")
+
 
 def hearable(system: System) -> list[Any]:
     """Return the bodies of a system whose sound `radiate` can compute.
@@ -37,6 +40,25 @@ def check_hearable(system: System, surface_rate: float | str | None = None) -> N
         check_plane(system)
     if surface_rate is not None and not isinstance(surface_rate, str):
         raise ArgumentError("surface_rate", "be left out, or all, for sound", surface_rate)
+
+
+def why_silent(system: System, surface_rate: float | str | None = None) -> str:
+    """Return the reason why a system cannot be heard, in words; empty if it can.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    surface_rate : float or str, optional
+        As for `check_hearable`.
+    """
+    if not hearable(system):
+        return "no body of the system radiates sound"
+    try:
+        check_hearable(system, surface_rate)
+    except ArgumentError as error:
+        return f"{error.argument} must {error.allowed}"
+    return ""
 
 
 def body_named(system: System, name: str) -> Any:

@@ -304,3 +304,21 @@ def _table(
         {"stop": names},
         {"definition": "after SAE J2521", **settings},
     )
+
+
+def squeal_words(events: xr.Dataset) -> str:
+    """Return in words whether a sound squeals, at which level and frequency.
+
+    Parameters
+    ----------
+    events : xarray.Dataset
+        Result of `squeal_events` for one stop.
+    """
+    limit, low, high = (events.attrs[name] for name in ("threshold", "lowest", "highest"))
+    rule = f"a squeal has {limit:g} dB(A) or more from {low / 1e3:g} to {high / 1e3:g} kHz"
+    levels, frequencies = events["peak_level"].values, events["peak_frequency"].values
+    peak, frequency = float(levels.max()), float(frequencies[levels.argmax()])
+    if not np.isfinite(peak):
+        return f"no: no tone lasts; {rule}"
+    word = "yes" if bool(events["squeals"].any()) else "no"
+    return f"{word}: the loudest tone has {peak:.1f} dB(A) at {frequency:.4g} Hz; {rule}"

@@ -59,3 +59,29 @@ def mode_of(found: xr.Dataset, mode: int | None) -> xr.Dataset:
     if mode not in found["mode"].values:
         raise ArgumentError("mode", f"be one of {listed(map(str, found['mode'].values))}", mode)
     return found.sel(mode=mode)
+
+
+def effects_title(found: xr.Dataset) -> str:
+    """Return the mode that grows fastest and the change of each parameter in words."""
+    one = mode_of(found, None)
+    kind = str(one["kind"].item())
+    words = "" if kind == "alone" else f", {kind}"
+    mode = f"mode at {float(one['frequency']):.5g} Hz, growth {float(one['growth_rate']):.5g} 1/s{words}"
+    return f"{mode}; {100.0 * found.attrs['change']:g} % more:"
+
+
+def effect_columns(found: xr.Dataset) -> dict[str, list[str]]:
+    """Return the columns of a table of the effects on the mode that grows fastest, by their headings."""
+    effects = what_helps(found)
+    sizes = zip(effects["value"].values, effects["units"].values, strict=True)
+    return {
+        "parameter": [str(name) for name in effects["parameter"].values],
+        "value": [f"{value:.5g} {'' if units == '1' else units}".rstrip() for value, units in sizes],
+        "growth rate [1/s]": [_signed(change) for change in effects["growth_rate_change"].values],
+        "frequency [Hz]": [_signed(change) for change in effects["frequency_change"].values],
+        "for less growth": [str(word) for word in effects["better"].values],
+    }
+
+
+def _signed(change: float) -> str:
+    return f"{change:+.4g}" if np.isfinite(change) else ""

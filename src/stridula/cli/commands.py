@@ -430,6 +430,61 @@ def stability(
     print_loci(name, vary, overrides, highest, out, plot, **options)
 
 
+@app.command("report")
+def report_(
+    names: Annotated[
+        list[str],
+        typer.Argument(metavar="NAME-OR-FILE", help="One or two scenarios, files or records.", autocompletion=_shipped),
+    ],
+    out: Annotated[str, typer.Option(metavar="FILE.html", help="Page to write.")],
+    set_: Set = None,
+    duration: Duration = None,
+    vary: Annotated[
+        str | None,
+        typer.Option(metavar="KEY=START:STOP:COUNT", help="Range of the root loci; default: all friction."),
+    ] = None,
+    random: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=LOW:HIGH", help="An uncertain parameter, as for stability; may be repeated."),
+    ] = None,
+    change: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=LOW:HIGH", help="A parameter of the smallest change that silences it, in SI; may be repeated."
+        ),
+    ] = None,
+    samples: Annotated[int, typer.Option(metavar="N", help="With --random: number of points.")] = 1000,
+    status: Annotated[str | None, typer.Option(metavar="WORD", help="Status of contacts, as for stability.")] = None,
+    velocity: SlipVelocity = None,
+    run: Annotated[bool, typer.Option(help="Run it in time.")] = True,
+    sound: Annotated[bool, typer.Option(help="Compute its sound.")] = True,
+    effects: Annotated[bool, typer.Option(help="Compute effects of parameters.")] = True,
+    check: Annotated[bool, typer.Option(help="Check step and cutoffs.")] = True,
+) -> None:
+    """Write a page on a system, or on two designs: modes, run, sound, and what helps."""
+    with _importing():
+        from .reporting import report_scenarios
+
+    print(
+        report_scenarios(
+            names,
+            out,
+            _pairs(set_ or []),
+            vary=vary,
+            change=change or [],
+            random=random or [],
+            status=status,
+            velocity=velocity,
+            duration=duration,
+            samples=samples,
+            run=run,
+            sound=sound,
+            effects=effects,
+            check=check,
+        )
+    )
+
+
 CycleStart = Annotated[
     str | None,
     typer.Option("--from", metavar="RUN.nc", help="Start from a record; else from a run of the scenario."),

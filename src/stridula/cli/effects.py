@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
 import xarray as xr
 from rich import box
 from rich.markup import escape
 from rich.table import Table
 
-from ..analysis.mode_effects import mode_of, what_helps
+from ..analysis.mode_effects import effect_columns, effects_title
 from ..records.files import save as save_file
 from ..studies.mode_derivatives import mode_sensitivity
 from .consoles import wide_console
@@ -42,20 +41,10 @@ def print_effects(
 
 
 def _table(found: xr.Dataset) -> Table:
-    one, effects = mode_of(found, None), what_helps(found)
-    frequency, growth = float(one["frequency"]), float(one["growth_rate"])
-    kind = str(one["kind"].item())
-    words = "" if kind == "alone" else f", {kind}"
-    title = f"mode at {frequency:.5g} Hz, growth {growth:.5g} 1/s{words}; {100.0 * found.attrs['change']:g} % more:"
-    table = Table(title=escape(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("parameter", overflow="fold")
-    for head in ("value", "growth rate [1/s]", "frequency [Hz]", "for less growth"):
-        table.add_column(head, justify="right", overflow="fold")
-    for number in range(effects.sizes["parameter"]):
-        row = effects.isel(parameter=number)
-        units = str(row["units"].item())
-        value = f"{float(row['value']):.5g} {'' if units == '1' else units}".rstrip()
-        changes = [float(row[word]) for word in ("growth_rate_change", "frequency_change")]
-        cells = [f"{change:+.4g}" if np.isfinite(change) else "" for change in changes]
-        table.add_row(escape(str(row["parameter"].item())), value, *cells, str(row["better"].item()))
+    table = Table(title=escape(effects_title(found)), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
+    columns = effect_columns(found)
+    for number, head in enumerate(columns):
+        table.add_column(head, justify="right" if number else "left", overflow="fold")
+    for cells in zip(*columns.values(), strict=True):
+        table.add_row(*map(escape, cells))
     return table

@@ -11,11 +11,12 @@ from rich import box
 from rich.markup import escape
 from rich.table import Table
 
-from ..checks import ArgumentError, counted
+from ..checks import ArgumentError
 from ..records.files import save as save_file
 from ..scenarios.quantities import parts
 from ..scenarios.read import read_tables
 from ..studies.growth_probability import mode_probability
+from ..studies.probability_words import probability_columns, probability_lines
 from .consoles import wide_console
 from .outputs import check_outputs, check_record
 from .points import ranges_of
@@ -43,7 +44,7 @@ def print_probability(
         found = mode_probability(name, uncertain, correlations=pairs, overrides=overrides, watchers=[watch], **options)
     console = wide_console()
     console.print(_table(found, title))
-    for line in _closing(found):
+    for line in probability_lines(found):
         console.print(escape(line), highlight=False)
     if out is not None:
         save_file(found, out)
@@ -104,30 +105,9 @@ def correlations_of(texts: Sequence[str]) -> dict[tuple[str, str], float]:
 
 def _table(found: xr.Dataset, title: str) -> Table:
     table = Table(title=escape(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    level = f"{100.0 * found.attrs['confidence']:g} % interval"
-    for head in ("growing modes [Hz]", "from", "to", "probability", level, "median growth [1/s]"):
+    columns = probability_columns(found)
+    for head in columns:
         table.add_column(head, justify="right", overflow="fold")
-    for number in range(found.sizes["band"]):
-        one = found.isel(band=number)
-        low, high = one["probability_interval"].values
-        seen = [float(one["frequency"]), *one["frequency_range"].values.tolist()]
-        cells = [f"{value:.5g}" if value == value else "" for value in seen]
-        growth = float(one["band_growth_rate"].median())
-        cells += [f"{float(one['probability']):.3f}", f"{low:.3f} to {high:.3f}"]
-        table.add_row(*cells, f"{growth:.4g}" if growth == growth else "")
+    for cells in zip(*columns.values(), strict=True):
+        table.add_row(*cells)
     return table
-
-
-def _closing(found: xr.Dataset) -> list[str]:
-    low, high = found["any_probability_interval"].values
-    lines = [f"Any mode grows: {float(found['any_probability']):.3f}, {low:.3f} to {high:.3f}."]
-    kinds = [(str(one), float(found["kind_probability"].sel(kind=one))) for one in found["kind"].values]
-    lines.append("Verdicts: " + ", ".join(f"{word} {share:.3f}" for word, share in kinds if share) + ".")
-    if count := int(found["beyond_cutoff"].sum()):
-        lines.append(f"{counted(count, 'band')} above the cutoff of every body, without the modes left out.")
-    if found.attrs["notes"]:
-        lines.append(f"Note: {found.attrs['notes']}.")
-    samples, failed = int(found["samples"]), int(found["failed"])
-    if failed:
-        lines.append(found.attrs["failure"])
-    return [*lines, f"{samples} points: {samples - failed} done, {failed} failed"]

@@ -7,6 +7,7 @@ from typing import Any
 
 import xarray as xr
 
+from ..analysis.doubts import doubts
 from ..checks import ArgumentError, at_least
 from ..disk import check_writable
 from ..integration import Diverged, Interrupted
@@ -14,13 +15,9 @@ from ..integration.bars import bar, told_of_time
 from ..records.files import save
 from ..scenarios.load import Scenario, load_scenario
 from .card import print_card
-from .doubts import doubts
 from .exits import FAILED, INTERRUPTED, Stopped
 from .outputs import check_outputs, check_record
 from .warned import doubts_on_the_card
-
-# Ends of runs that can be heard.
-WHOLE = ("finished", "off the track")
 
 
 def run_scenario(
@@ -124,16 +121,12 @@ def _finish(
 
 def how_to_get_the_level(record: xr.Dataset, scenario: Scenario, out: str | None) -> str:
     """Return how the level of a run is found; nothing of one that failed."""
-    from ..acoustics.hearable import check_hearable, hearable
+    from ..acoustics.hearable import WHOLE, why_silent
 
     if record.attrs["ended"] not in WHOLE:
         return ""
-    if not hearable(scenario.system):
-        return "none: no body of the system radiates sound"
-    try:
-        check_hearable(scenario.system, scenario.surface_rate)
-    except ArgumentError as error:
-        return f"none: {error.argument} must {error.allowed}"
+    if reason := why_silent(scenario.system, scenario.surface_rate):
+        return f"none: {reason}"
     return f"not computed: {f'`stridula sound {out}` prints it' if out else '--wav FILE.wav computes it'} at 1 m"
 
 

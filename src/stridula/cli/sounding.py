@@ -9,6 +9,7 @@ from typing import Any
 import xarray as xr
 
 from ..acoustics.hearable import body_named, hearable
+from ..acoustics.level_words import loudest
 from ..acoustics.listeners import FARTHEST
 from ..acoustics.radiate import radiate
 from ..acoustics.wav import NORMALISED, RATES, SUBTYPES, write_wav
@@ -20,7 +21,7 @@ from ..scenarios.load import Scenario, load_scenario, scenario_of_tables
 from ..scenarios.quantities import quantity
 from ..scenarios.read import tables_of_text
 from ..system import System
-from .hearing import loudest, print_levels
+from .hearing import print_levels
 from .outputs import check_outputs
 
 # Window of a spectrogram [s].

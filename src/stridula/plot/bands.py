@@ -8,8 +8,10 @@ from matplotlib.figure import Figure
 
 from ..acoustics.levels import AUDIBLE, BANDS, NOMINAL, SHORTEST, equivalent_level, third_octave_levels
 from ..acoustics.pressures import channels, positions
+from ..acoustics.squeals import HIGHEST, LOWEST
 from ..arrays import Array
-from ..checks import ArgumentError, positive
+from ..checks import ArgumentError, finite, positive
+from ..weighting import a_weighting
 from .colours import LINES
 
 RANGE = 60.0
@@ -17,7 +19,9 @@ RANGE = 60.0
 EDGE = 10.0**0.05
 
 
-def third_octaves(pressure: xr.DataArray, *, dynamic_range: float = RANGE, title: str = "") -> Figure:
+def third_octaves(
+    pressure: xr.DataArray, *, limit: float | None = None, dynamic_range: float = RANGE, title: str = ""
+) -> Figure:
     """Draw the levels of a sound in third-octave bands, as a staircase for each listener.
 
     Bands from 25 Hz to 16 kHz are drawn where the duration and the sample rate of the sound suffice. The legend gives
@@ -27,6 +31,9 @@ def third_octaves(pressure: xr.DataArray, *, dynamic_range: float = RANGE, title
     ----------
     pressure : xarray.DataArray, shape (time,) or (time, listener)
         Sound pressure [Pa].
+    limit : float, optional
+        A-weighted level of a tone [dB(A)], such as the 70 dB of SAE J2521, drawn over the band of `squeal_events` as
+        the level that it has without weighting.
     dynamic_range : float, optional
         Range of the levels [dB], below the largest.
     title : str, optional
@@ -43,6 +50,8 @@ def third_octaves(pressure: xr.DataArray, *, dynamic_range: float = RANGE, title
         If the sound is silent, or too short or too coarse for any band.
     """
     positive("dynamic_range", dynamic_range)
+    if limit is not None:
+        finite("limit", limit)
     values, rate = channels(pressure)
     levels = third_octave_levels(pressure, *_ends(len(values) / rate, rate))
     rows = np.atleast_2d(levels.transpose(..., "band").values)
@@ -53,6 +62,10 @@ def third_octaves(pressure: xr.DataArray, *, dynamic_range: float = RANGE, title
     axes = figure.subplots()
     edges = np.append(levels.centre.values / EDGE, levels.centre.values[-1] * EDGE)
     bottom = top - dynamic_range
+    if limit is not None:
+        tones, allowed = _limit(limit)
+        top, bottom = max(top, 5.0 * np.ceil(allowed.max() / 5.0)), min(bottom, 5.0 * np.floor(allowed.min() / 5.0))
+        axes.plot(tones, allowed, color="0.2", linewidth=1.0, linestyle="--", label=f"a tone of {limit:g} dB(A)")
     for number, (row, label) in enumerate(zip(rows, _labels(pressure, len(values) / rate, rate), strict=True)):
         colour = LINES[number % len(LINES)]
         axes.stairs(np.maximum(row, bottom), edges, baseline=bottom, color=colour, linewidth=1.3, label=label)
@@ -72,6 +85,12 @@ def third_octaves(pressure: xr.DataArray, *, dynamic_range: float = RANGE, title
         axes.legend(fontsize=8, frameon=False)
     axes.set_title(title, fontsize=11)
     return figure
+
+
+def _limit(level: float) -> tuple[Array, Array]:
+    """Return frequencies [Hz] in the band of squeal, and the levels there of tones with an A-weighted level [dB]."""
+    tones = np.geomspace(LOWEST, HIGHEST, 200)
+    return tones, level - 20.0 * np.log10(np.abs(a_weighting(tones)))
 
 
 def _ends(lasts: float, rate: float) -> tuple[float, float]:

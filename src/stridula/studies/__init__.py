@@ -32,6 +32,7 @@ _HOME = {
     "root_loci": "loci",
     "sensitivity": "sobol",
     "share_of": "ensembles",
+    "smallest_change": "smallest_changes",
     "squeal_survey": "surveys",
     "survey_table": "tables",
     "sweep": "sweeps",

@@ -131,7 +131,7 @@ def mode_sensitivity(
         groups = {number: group_of(base.pencil, base.found, number) for number in chosen.of(base)}
         changes, refused = base.all_changes(values, list(groups.values()), keeps_on=parameters is None)
         for name, where in by_key("masses", masses).items():
-            slope = by_mass(base.pencil, displacement_rows(base.structure, _point(name, where, own)))
+            slope = by_mass(base.pencil, displacement_rows(base.structure, point_of(name, where, own)))
             changes[f"mass at {name}"] = [group.pair.derivative(slope) for group in groups.values()]
     if not changes:
         raise ArgumentError("parameters", "hold at least one key", parameters, got="none")
@@ -267,7 +267,7 @@ def _keys(parameters: Any) -> list[str]:
     return list(parameters)
 
 
-def _point(name: str, where: Any, system: System) -> BodyPoint:
+def point_of(name: str, where: Any, system: System) -> BodyPoint:
     """Return the point of a system at which a mass is added."""
     key, names = f"masses[{name!r}]", {system.body_name(body): body for body in system.bodies}
     if not isinstance(where, tuple):

@@ -251,6 +251,11 @@ def _measured(run: xr.Dataset) -> Measured:
     return Measured(str(found["regime"]), numbers)
 
 
+def growth_in_forces(run: xr.Dataset) -> float:
+    """Return the rate at which the fluctuation of the forces of a run grows from its start on [1/s], NaN if not."""
+    return growth_of(_forces(run), float(run.attrs["sample_interval"])) if run.sizes["time"] > 1 else math.nan
+
+
 def growth_of(forces: Array, interval: float) -> float:
     """Return the rate at which the fluctuation of the forces grows from the start on [1/s], NaN if it does not.
 

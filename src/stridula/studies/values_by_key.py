@@ -108,7 +108,13 @@ def si_tables(source: Any, overrides: Mapping[str, Any]) -> dict[str, Any]:
     if problems:
         raise ScenarioError(problems)
     # The scenario of a system has numbers in SI, and shares none.
-    return _with_lists(tables_in_si(tables)) if is_written(source) else tables
+    return in_si(tables) if is_written(source) else tables
+
+
+def in_si(written: dict[str, Any]) -> dict[str, Any]:
+    """Return tables as written in SI, with shared values in each body or contact."""
+    found: dict[str, Any] = _with_lists(tables_in_si(written))
+    return found
 
 
 def _with_lists(tables: Any) -> Any:
@@ -139,7 +145,7 @@ def value_of(key: str, tables: dict[str, Any]) -> Value:
         raise ArgumentError("parameters", words, got=f"0 for {key}")
     if outline.is_whole(outline.node_at(paths[0], tables)):
         raise ArgumentError("parameters", "not be whole numbers", got=f"{brief(found[0])} for {key}")
-    return Value(key, tuple(paths), numbers, _units(paths[0], tables), tables)
+    return Value(key, tuple(paths), numbers, units_of(paths[0], tables), tables)
 
 
 def all_values(tables: dict[str, Any]) -> list[Value]:
@@ -171,7 +177,7 @@ def _are_equal(tables: dict[str, Any], word: str) -> bool:
     return len(numbers) > 1 and numbers[0] is not None and all(one == numbers[0] for one in numbers)
 
 
-def _units(path: Path, tables: dict[str, Any]) -> str:
+def units_of(path: Path, tables: dict[str, Any]) -> str:
     """Return the SI unit of a number, empty if it has none; a stiffness of surfaces is one of an area."""
     units = outline.units(outline.node_at(path, tables))
     if len(units) != 1:
