@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import least_squares, nnls
+import scipy  # its parts are imported on first use
 
 from ..arrays import Array
 
@@ -105,7 +105,7 @@ def _with_branches(angular: Array, table: Array, count: int) -> list[Relaxation]
             return _missed(_fitted(angular, table, np.exp(rates)).stiffness(angular), table)
 
         bounds = (low - 4.0, high + 1.0)
-        result = least_squares(missed, guess, bounds=bounds, max_nfev=TRIALS)
+        result = scipy.optimize.least_squares(missed, guess, bounds=bounds, max_nfev=TRIALS)
         found.append(_fitted(angular, table, np.exp(result.x)))
     return found
 
@@ -130,7 +130,7 @@ def _fitted(angular: Array, table: Array, rates: Array) -> Relaxation:
     least, scale = LEAST_AT_REST * table.real.min(), table.real.max()
     rows = np.concatenate([np.real(columns) / table.real, np.imag(columns) / _losses(table)], axis=1).T
     right = np.concatenate([(table.real - least) / table.real, table.imag / _losses(table)])
-    shares = scale * nnls(scale * rows, right)[0]
+    shares = scale * scipy.optimize.nnls(scale * rows, right)[0]
     branches = tuple(
         Branch(float(share), float(one), float(damping))
         for share, one in zip(shares[1:], frequencies, strict=True)
