@@ -237,9 +237,9 @@ def test_an_invalid_link_is_reported(browsing):
     assert page.locator("#problem").is_visible()
     assert "link cannot be read" in page.locator("#problem").text_content()
     # It stays until something else is played.
-    slide(page, 1.2)
+    page.locator("#case").select_option("stable-sliding")
     page.locator("#problem").wait_for(state="hidden")
-    until(page, "location.hash.includes('=1.2')")
+    until(page, "location.hash.includes('stable-sliding')")
     page.evaluate("location.hash = '#text=%21%21%21'")
     page.locator("#problem").wait_for(state="visible")
 

@@ -98,7 +98,7 @@ def check_brake_shim(names: Mapping[str, Any], printed: str, folder: Path) -> No
         assert growths[-1] < 0.0
     loud, quiet = (np.abs(names[run].velocity.values[:, 0]) for run in ("loud", "quiet"))
     assert loud[-500:].max() > 2.0 * loud[-1400:-900].max()
-    assert quiet[-500:].max() < 0.5 * quiet[:500].max()
+    assert quiet[-500:].max() < 0.9 * quiet[:500].max()
     assert (folder / "brake_shim.png").read_bytes().startswith(b"\x89PNG")
 
 

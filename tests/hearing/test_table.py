@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from stridula.acoustics import sensation
+from stridula.acoustics import level_words, sensation
 from stridula.acoustics.level_words import loudest
-from stridula.cli import hearing
 from stridula.cli.hearing import print_levels
 
 from .sounds import heard, tone
@@ -22,7 +21,7 @@ def test_every_measure_of_every_listener(capsys):
     head, _, first, second = (line.split("  ") for line in capsys.readouterr().out.strip().splitlines())
     assert [word.strip() for word in head if word.strip()] == [
         "listener",
-        *(column.head for column in (*hearing.LEVELS, *hearing.SENSATIONS)),
+        *(column.head for column in (*level_words.LEVELS, *level_words.SENSATIONS)),
     ]
     cells = [word.strip() for word in first if word.strip()]
     assert cells[0] == "ear at (0.25, 0.25, 0.25) m"
@@ -67,13 +66,13 @@ def test_measures_that_need_a_longer_sound_are_one_line(capsys, lasts, rate, las
     # Before it the head, a rule, the listener and the end of the band.
     assert len(said) == 4 + (rate < 40e3)
     assert ("the levels are of sound up to 8 kHz" in said) is (rate < 40e3)
-    for column in (*hearing.LEVELS, *hearing.SENSATIONS):
+    for column in (*level_words.LEVELS, *level_words.SENSATIONS):
         assert (column.head in said[0]) is (column.name not in last_line)
 
 
-@pytest.mark.parametrize("column", [*hearing.LEVELS, *hearing.SENSATIONS], ids=lambda column: column.name)
+@pytest.mark.parametrize("column", [*level_words.LEVELS, *level_words.SENSATIONS], ids=lambda column: column.name)
 def test_requirements_in_the_table_are_those_of_the_measures(column):
-    if column in hearing.SENSATIONS and not sensation.is_available():
+    if column in level_words.SENSATIONS and not sensation.is_available():
         pytest.skip("takes mosqito")
     rate = column.lowest_rate or 8e3
     assert np.isfinite(column.measure(tone(duration=column.shortest + 1.0 / rate, rate=rate)).values).all()
@@ -92,7 +91,7 @@ def test_the_louder_ear_is_named_as_far_as_the_sound_is_enough():
 
 
 def test_measures_that_need_a_package_name_it(capsys, monkeypatch):
-    monkeypatch.setattr(hearing, "is_available", lambda: False)
+    monkeypatch.setattr(level_words, "is_available", lambda: False)
     print_levels(tone())
     assert (
         "loudness, sharpness and roughness need mosqito, which is not installed: pip install" in capsys.readouterr().out
