@@ -39,14 +39,14 @@ def plays(page, key: str, value: float) -> None:
 
 
 def inside(page, place: str) -> bool:
-    """Return whether all of an element can be seen without scrolling, and nothing lies over its corners."""
+    """Return whether all of an element can be seen without scrolling, and only notices lie over its corners."""
     return page.locator(place).first.evaluate(
         """(one) => {
           const { left, top, right, bottom } = one.getBoundingClientRect();
           if (left < 0 || top < 0 || right > innerWidth || bottom > innerHeight) return false;
           return [[left + 2, top + 2], [right - 2, bottom - 2]].every(([x, y]) => {
             const found = document.elementFromPoint(x, y);
-            return one.contains(found) || found.contains(one);
+            return one.contains(found) || found.contains(one) || found.closest(".notices") !== null;
           });
         }"""
     )
