@@ -54,7 +54,7 @@ def test_a_single_frequency_is_met():
 def test_a_spring_without_loss_is_a_spring():
     mass = st.PointMass(1.0)
     spring = st.ViscoelasticSpring(mass.centre, frequency=[10.0, 100.0], stiffness=[5e3, 5e3], loss_factor=[0.0, 0.0])
-    assert spring.branches == ()
+    assert spring.relaxation.branches == ()
     assert float(spring.complex_stiffness(50.0).real) == pytest.approx(5e3, rel=1e-12)
 
 
@@ -77,7 +77,7 @@ def test_modes_are_the_roots_of_the_complex_stiffness(seed):
     found = st.sliding_stability(sliding(mass, [spring]))
     exponents = found["growth_rate"].values + 2j * np.pi * found["frequency"].values
     along = np.abs(exponents) > 1e-6
-    assert along.sum() >= len(spring.branches) + 1
+    assert along.sum() >= len(spring.relaxation.branches) + 1
     left = mass.mass * exponents[along] ** 2
     dynamic = spring.relaxation.stiffness(-1j * exponents[along])
     np.testing.assert_allclose(dynamic, -left, rtol=1e-5)
@@ -123,7 +123,7 @@ def test_a_kicked_pair_relaxes_as_its_equations_say(seed):
     drives = [st.Force(one.centre, y=-2.0), st.Force(two.centre, y=-3.0), st.InitialVelocity(one, x=0.8)]
     system = st.System(contacts, drives, [between, ground])
     run = st.simulate(system, 0.3, probes=[st.Displacement(body.centre, "x") for body in (one, two)])
-    branches, rest = between.branches, between.relaxation.at_rest
+    branches, rest = between.relaxation.branches, between.relaxation.at_rest
 
     def rates(_, y):
         (x1, x2, v1, v2), (inner, speed) = y[:4], y[4:].reshape(2, -1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..arrays import Array
 from ..bodies import BodyPoint
 from ..histories import History
-from .elements import branches_of, elements_of, held_motions
+from .elements import elements_of, held_motions
 from .ends import ends, unit
 from .linear import Dashpot, Spring
 from .nonlinear import CubicSpring, NonlinearSpring, TabulatedSpring
@@ -23,7 +23,6 @@ __all__ = [
     "Spring",
     "TabulatedSpring",
     "ViscoelasticSpring",
-    "branches_of",
     "elements_of",
     "ends",
     "held_motions",

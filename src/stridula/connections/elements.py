@@ -34,12 +34,15 @@ class Element(NamedTuple):
     motion : Motion
         Motion against which it acts.
     stiffness, damping : float
-        Force or moment per unit of the motion [N/m, N m] and of its rate [N s/m, N m s].
+        Force or moment per unit of the motion [N/m, N m] and of its rate [N s/m, N m s], before the branches relax.
+    branches : tuple of Branch
+        Parts of the stiffness that relax.
     """
 
     motion: Motion
     stiffness: float
     damping: float
+    branches: tuple[Branch, ...] = ()
 
 
 # Displacements along and rotations about the world's axes.
@@ -51,11 +54,6 @@ def elements_of(connection: Any) -> tuple[Element, ...]:
     """Return the linear parts of a connection."""
     own: tuple[Element, ...] | None = getattr(connection, "elements", None)
     return (Element(Motion(unit(connection)), *connection.rates),) if own is None else own
-
-
-def branches_of(connection: Any) -> tuple[Branch, ...]:
-    """Return the springs of a connection that relax, along its direction."""
-    return getattr(connection, "branches", ())
 
 
 def held_motions(connection: Any) -> tuple[Motion, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Annotated, ClassVar
 
@@ -12,11 +12,11 @@ import numpy as np
 
 from ..arrays import Array
 from ..bodies import BodyPoint
-from ..checks import ArgumentError, positive, rising
-from ..columns import read_rising
+from ..checks import ArgumentError, rising
 from ..declared import Axis, Each, Number, check_declared
 from ..histories import Constant, History
 from .ends import along, check_ends
+from .table_files import spring_of_file
 
 
 @dataclass(frozen=True)
@@ -248,15 +248,8 @@ class TabulatedSpring(NonlinearSpring):
         """
         if len(columns) != 2:
             raise ArgumentError("columns", "be two, of displacement and force", columns)
-        places, forces = read_rising(path, columns)
-        try:
-            table = {
-                "displacement": (places * positive("displacement_unit", displacement_unit)).tolist(),
-                "force": (forces * positive("force_unit", force_unit)).tolist(),
-            }
-            return cls(first, second, direction=direction, **table)
-        except ArgumentError as error:
-            raise error.inside(str(path)) from None
+        units = {"displacement": displacement_unit, "force": force_unit}
+        return spring_of_file(partial(cls, first, second, direction=direction), path, columns, units)
 
     @cached_property
     def _slopes(self) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Annotated, ClassVar
 
@@ -11,14 +12,14 @@ import numpy as np
 
 from ..arrays import Array
 from ..bodies import BodyPoint
-from ..checks import ArgumentError, positive, rising
-from ..columns import read_rising
+from ..checks import ArgumentError, rising
 from ..declared import Axis, Each, Number, check_declared
 from ..doubtful import warn_of
 from ..histories import Constant, History
-from .branches import Branch, Relaxation, relaxation_of
+from .branches import Relaxation, relaxation_of
 from .elements import Element, Motion
 from .ends import along, check_ends, unit
+from .table_files import spring_of_file
 
 # Relative error of the branches from which there is a warning.
 DOUBTFUL = 0.1
@@ -127,16 +128,8 @@ class ViscoelasticSpring:
         """
         if len(columns) != 3:
             raise ArgumentError("columns", "be three, of frequency, stiffness and loss factor", columns)
-        frequencies, stiffnesses, losses = read_rising(path, columns)
-        try:
-            table = {
-                "frequency": (frequencies * positive("frequency_unit", frequency_unit)).tolist(),
-                "stiffness": (stiffnesses * positive("stiffness_unit", stiffness_unit)).tolist(),
-                "loss_factor": losses.tolist(),
-            }
-            return cls(first, second, direction=direction, **table)
-        except ArgumentError as error:
-            raise error.inside(str(path)) from None
+        units = {"frequency": frequency_unit, "stiffness": stiffness_unit, "loss_factor": 1.0}
+        return spring_of_file(partial(cls, first, second, direction=direction), path, columns, units)
 
     @property
     def relaxation(self) -> Relaxation:
@@ -144,14 +137,9 @@ class ViscoelasticSpring:
         return relaxation_of(tuple(self.frequency), tuple(self.stiffness), tuple(self.loss_factor))
 
     @property
-    def branches(self) -> tuple[Branch, ...]:
-        """Springs that relax, in parallel to the stiffness at rest."""
-        return self.relaxation.branches
-
-    @property
     def elements(self) -> tuple[Element, ...]:
-        """Its stiffness for fast motion; the branches relax by their coordinates."""
-        return (Element(Motion(unit(self)), self.relaxation.fast, 0.0),)
+        """Its stiffness for fast motion, with the branches that relax."""
+        return (Element(Motion(unit(self)), self.relaxation.fast, 0.0, self.relaxation.branches),)
 
     def complex_stiffness(self, frequency: float | Sequence[float] | Array) -> Array:
         """Return the complex stiffness with which it acts at frequencies [Hz], in N/m.

@@ -160,7 +160,7 @@ def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:
         probes=[],
         prescribed=prescribed_of(system, histories),
         spans={system.body_name(body): coordinates.spans[body] for body in system.bodies},
-        relaxing=coordinates.spans.get(coordinates.relaxing, (0, 0)),
+        relaxing=coordinates.relaxing_span,
         blend=coordinates.blend,
         turning=turning,
     )

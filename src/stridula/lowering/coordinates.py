@@ -12,7 +12,7 @@ from ..arrays import Array
 from ..bodies import BodyPoint
 from ..bodies.modes import Modes
 from ..checks import ArgumentError
-from ..connections import ends, held_motions, unit
+from ..connections import ends, held_motions
 from ..connections.elements import Motion, elements_of
 from ..ordinary import check_coupled_count
 from ..system import System
@@ -56,7 +56,7 @@ class Coordinates:
     @property
     def coupled(self) -> tuple[Any, ...]:
         """What may be coupled: joined bodies, and the inner motions of their springs."""
-        return (*self.joined, *([self.relaxing] if self.relaxing.motions else []))
+        return (*self.joined, *([self.relaxing] if self.relaxing.branches else []))
 
     @cached_property
     def order(self) -> tuple[Any, ...]:
@@ -73,9 +73,9 @@ class Coordinates:
         return found
 
     @property
-    def first_relaxing(self) -> int:
-        """Number of the first inner motion, that of the first mode of bodies apart if there is none."""
-        return sum(self.modes(body).count for body in self.joined)
+    def relaxing_span(self) -> tuple[int, int]:
+        """First of the inner motions, and end of their range; empty without viscoelastic springs."""
+        return self.spans.get(self.relaxing, (0, 0))
 
     @cached_property
     def size(self) -> int:
@@ -239,18 +239,18 @@ def _matrices(coordinates: Coordinates) -> tuple[Array, Array, Array]:
         own[span] = modes.stiffness
         damped = np.diag(modes.damping_rate)
         dissipation[span, span] = damped if modes.damping_matrix is None else modes.damping_matrix
+    inner = iter(range(*coordinates.relaxing_span))
     for connection in coordinates.system.connections:
-        for motion, *rates in elements_of(connection):
-            row = coordinates.between(connection, motion)[:size]
-            for matrix, rate in zip((stiffness, dissipation), rates, strict=True):
+        for element in elements_of(connection):
+            row = coordinates.between(connection, element.motion)[:size]
+            for matrix, rate in ((stiffness, element.stiffness), (dissipation, element.damping)):
                 if rate:
                     matrix += rate * np.outer(row, row)
-    for number, (spring, branch) in enumerate(coordinates.relaxing.motions, coordinates.first_relaxing):
-        # That of a branch acts between the ends and the inner motion, of unit mass.
-        row = coordinates.between(spring, Motion(unit(spring)))[:size]
-        across = -np.sqrt(branch.stiffness) * branch.angular_frequency * row
-        stiffness[number] += across
-        stiffness[:, number] += across
+            for branch in element.branches:
+                # Its spring acts between the ends and the inner motion, of unit mass.
+                number, across = next(inner), -np.sqrt(branch.stiffness) * branch.angular_frequency * row
+                stiffness[number] += across
+                stiffness[:, number] += across
     return own, stiffness, dissipation
 
 

@@ -2,33 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
 import numpy as np
 
 from ..bodies.modes import Modes
-from ..connections import branches_of
-from ..connections.branches import Branch
+from ..connections import elements_of
 from ..system import System
 
 
-class InnerMotion(NamedTuple):
-    """A branch of a viscoelastic spring, with the coordinate that it adds.
-
-    Attributes
-    ----------
-    spring : ViscoelasticSpring
-        The spring.
-    branch : Branch
-        The branch.
-    """
-
-    spring: Any
-    branch: Branch
-
-
 class Relaxing:
-    """The inner motions of all viscoelastic springs, which stand beside the modes of the bodies.
+    """The inner motions of all branches of connections, which stand beside the modes of the bodies.
 
     Parameters
     ----------
@@ -37,11 +19,11 @@ class Relaxing:
     """
 
     def __init__(self, system: System) -> None:
-        pairs = [(one, branch) for one in system.connections for branch in branches_of(one)]
-        self.motions = [InnerMotion(*pair) for pair in pairs]
+        elements = [element for one in system.connections for element in elements_of(one)]
+        self.branches = [branch for element in elements for branch in element.branches]
 
     def modes(self, is_held: bool) -> Modes:
-        """Return the coordinates as modes, which no uniform acceleration drives."""
-        frequencies = np.array([one.branch.angular_frequency for one in self.motions])
-        rates = np.array([one.branch.damping_rate for one in self.motions])
-        return Modes(frequencies, rates, np.zeros((3, len(self.motions))))
+        """Return the inner motions as modes, which no uniform acceleration drives."""
+        frequencies = np.array([one.angular_frequency for one in self.branches])
+        rates = np.array([one.damping_rate for one in self.branches])
+        return Modes(frequencies, rates, np.zeros((3, len(self.branches))))
