@@ -41,6 +41,24 @@ def bar(title: str, asked: bool = False) -> Iterator[Show]:
 
 
 @contextmanager
+def bar_if(wanted: bool, title: str) -> Iterator[Show]:
+    """Show a bar, also where standard error is not a terminal, if it is wanted; else nothing.
+
+    Parameters
+    ----------
+    wanted : bool
+        Whether there is a bar.
+    title : str
+        Name of the computation.
+    """
+    if not wanted:
+        yield lambda done, total, words, before=0.0: None
+        return
+    with bar(title, asked=True) as show:
+        yield show
+
+
+@contextmanager
 def time_shown(progress: bool, title: str) -> Iterator[list[Watcher]]:
     """Yield the watchers of a march that show a bar; none if `progress` is false."""
     instance("progress", progress, bool)

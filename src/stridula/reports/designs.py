@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..analysis.stability import sliding_stability
 from ..arrays import Array
 from ..checks import ArgumentError, instance
 from ..disk import RECORDS, is_there
@@ -133,6 +134,11 @@ class Design:
     def given(self) -> dict[str, Any]:
         """Arguments of linear theory."""
         return {"status": self.options.status, "velocity": self.options.velocity}
+
+    @cached_property
+    def modes(self) -> xr.Dataset:
+        """Its modes of sliding."""
+        return sliding_stability(self.system, **self.given)
 
     def numbers(self, last: Sequence[str], within: str = "") -> list[tuple[Key, float]]:
         """Return the paths and values of numbers with a key, within a table of a name if one is given."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,7 @@ from ..arrays import Array
 from ..bars.line_bars import Show
 from ..checks import by_key, count, instance
 from ..disk import check_ending, check_writable, write
-from ..integration.bars import bar, told_of_time
+from ..integration.bars import bar_if, told_of_time
 from ..linear.given import Status, Velocity
 from ..studies.loci import rising
 from ..system import System
@@ -171,7 +170,7 @@ def report(
         velocity=velocity,
     )
     designs = [design_of(one, options) for one in (source, other) if one is not None]
-    with _bar(progress) as show:
+    with bar_if(progress, "report") as show:
         pictures = Pictures()
         sections = [sections_of(design, pictures, show) for design in designs]
         titles = _titles(designs)
@@ -217,15 +216,6 @@ def _titles(designs: Sequence[Design]) -> tuple[str, ...]:
     if len(set(names)) < len(names):
         names = [f"{name}, {number}" for number, name in enumerate(names, 1)]
     return tuple(f"{title} ({name})" for title, name in zip(titles, names, strict=True))
-
-
-@contextmanager
-def _bar(progress: bool) -> Iterator[Show]:
-    if not progress:
-        yield lambda done, total, words, before=0.0: None
-        return
-    with bar("report", asked=True) as show:
-        yield show
 
 
 def check_page(name: str, path: str | Path) -> None:

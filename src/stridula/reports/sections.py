@@ -110,7 +110,7 @@ def modes_section(design: Design, pictures: Pictures) -> Section:
     """Return equilibrium and modes of sliding by linear theory."""
     title = "Modes of sliding"
     try:
-        modes = sliding_stability(design.system, **design.given)
+        modes = design.modes
     except ValueError as error:
         return _without(title, error, "linear theory")
     verdict = verdict_lines(modes, design.options.status is not None)
@@ -203,8 +203,9 @@ def remedy_section(design: Design, pictures: Pictures) -> Section:
     if asked.remedies is None:
         return Section(title, [Lines(["No parameter was named that may change."])])
     over = design.over()
-    known = over is not None and over[0] == COEFFICIENT
-    conditions = {COEFFICIENT: (over[1][-1] * LEAST_FRICTION, 0.5 * over[1][-1])} if known and over is not None else {}
+    conditions = {}
+    if over is not None and over[0] == COEFFICIENT and COEFFICIENT not in asked.remedies:
+        conditions = {COEFFICIENT: (over[1][-1] * LEAST_FRICTION, 0.5 * over[1][-1])}
     found = smallest_change(
         design.source, asked.remedies, conditions, overrides=asked.overrides, velocity=asked.velocity, most=MOST_CHANGES
     )
@@ -247,7 +248,7 @@ def cutoff_section(design: Design, pictures: Pictures) -> Section:
         return Section(title, [Lines(["No body has a cutoff."])])
     try:
         both = {
-            "as given": sliding_stability(design.system, **design.given),
+            "as given": design.modes,
             f"cutoffs {100.0 * (HIGHER - 1.0):.0f} % higher": sliding_stability(
                 design.scaled(cutoffs, HIGHER), **design.given
             ),

@@ -81,6 +81,7 @@ class Search:
     show: Show
     tried: int = field(default=0, init=False)
     loud: tuple[float, ...] = field(default=(), init=False)
+    _before: dict[tuple[float, ...], State] = field(default_factory=dict, init=False)
 
     @cached_property
     def names(self) -> list[str]:
@@ -115,10 +116,6 @@ class Search:
         check_wanted()
         numbers = self.values(change) | dict(zip(self.over, condition, strict=True))
         return _state_of(growth_of(self.systems.make(numbers), self.velocity))
-
-    @cached_property
-    def _before(self) -> dict[tuple[float, ...], State]:
-        return {}
 
     def before(self, condition: tuple[float, ...]) -> State:
         """Return the growth without a change at a condition."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +10,8 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
-from ..bars.line_bars import Show
 from ..checks import ArgumentError, by_key, count, counted, finite, instance, non_negative, positive
-from ..integration.bars import bar
+from ..integration.bars import bar_if
 from ..records.variables import described
 from ..system import System
 from .change_search import Search
@@ -112,7 +110,7 @@ def smallest_change(
         systems = systems_of_tables(source, asked, conditions, lumps, by_key("overrides", overrides))
     if not systems.given:
         raise ArgumentError("ranges", "hold at least one key", ranges, got="none")
-    with one_thread_each(), _shown(progress) as show:
+    with one_thread_each(), bar_if(progress, "smallest change") as show:
         return _found(Search(systems, conditions, margin, velocity, most, seed, show), points)
 
 
@@ -194,12 +192,3 @@ def _verdict(found: xr.Dataset, margin: float) -> str:
         if changed != given
     ]
     return f"{goal} with {', '.join(words)}; {rates}" if words else f"{goal} as given; {rates}"
-
-
-@contextmanager
-def _shown(progress: bool) -> Iterator[Show]:
-    if not progress:
-        yield lambda done, total, words, before=0.0: None
-        return
-    with bar("smallest change", asked=True) as show:
-        yield show
