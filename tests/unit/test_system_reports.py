@@ -17,7 +17,7 @@ from stridula.analysis.mode_effects import effect_columns
 from stridula.analysis.record_card import facts_of
 from stridula.analysis.stability_words import mode_columns, verdict_lines
 from stridula.reports.designs import Options, design_of
-from stridula.reports.sections import Pictures, inputs_section
+from stridula.reports.sections import Pictures, _without_decays, inputs_section
 from stridula.weighting import a_weighting
 
 QUICK = {"run": False, "effects": False, "check": False}
@@ -270,3 +270,34 @@ def test_a_stiffness_of_surfaces_is_one_of_an_area():
     assert facts.facts["surfaces.0.stiffness.stiffness"].endswith(("N/m3", "GPa/m", "N/mm3"))
     assert facts.facts["surfaces.0.stiffness.damping"].endswith("N s/m3")
     assert facts.facts["connections.0.stiffness"].endswith("N/m")
+
+
+def test_loci_leave_out_modes_that_decay_within_a_period_or_above_the_cutoff():
+    frequency = [[100.0, 50.0, 0.0, 5e7], [100.0, 50.0, 0.0, 5e7]]
+    growth = [[-1.0, -60.0, -5.0, -1.0], [1.0, -60.0, -5.0, 2.0]]
+    loci = xr.Dataset(
+        {name: (("mu", "mode"), one) for name, one in (("frequency", frequency), ("growth_rate", growth))}
+    ).assign(unstable=(("mu", "mode"), np.array(growth) > 0.0))
+    drawn = _without_decays(loci, 1e3)
+    seen = [[True, False, False, False], [True, False, False, True]]
+    for name in ("frequency", "growth_rate"):
+        np.testing.assert_array_equal(np.isfinite(drawn[name].values), seen)
+
+
+def test_friction_may_be_what_changes():
+    """It is then no condition of the search."""
+    page = st.report(flutter(0.6), remedies={"friction.coefficient": (0.01, 0.9)}, **QUICK)
+    assert "no mode grows with friction.coefficient from 0.6 to" in unescape(page.html)
+    assert "Searched at the friction given" in page.html
+
+
+def flutter(friction):
+    """A mass on two inclined springs whose modes merge under friction, with damping."""
+    mass = st.PointMass(1.0)
+    ways = [(np.cos(angle), np.sin(angle), 0.0) for angle in np.radians([150.0, 30.0])]
+    springs = [
+        st.Spring(mass.centre, stiffness=one * 1e4, direction=way) for one, way in zip((11.0, 20.0), ways, strict=True)
+    ]
+    dashpots = [st.Dashpot(mass.centre, coefficient=1.0, direction=way) for way in ("x", "y")]
+    contact = st.PointContact(mass.centre, st.RigidTrack(velocity=-3.0), friction=st.Coulomb(friction), stiffness=11e4)
+    return st.System(contact, [st.Force(mass.centre, y=-100.0)], [*springs, *dashpots])

@@ -61,7 +61,9 @@ def run_section(design: Design, run: xr.Dataset | None, sound: xr.DataArray | st
     level = loudest(sound) if isinstance(sound, xr.DataArray) else ""
     facts = facts_of(run, design.system, f"at 1 m, {level}" if level else "")
     growth = growth_in_forces(run)
-    facts["growth in time"] = f"{growth:.5g} 1/s of the forces" if growth == growth else "none from the start on"
+    facts["growth in time"] = (
+        f"{growth:.5g} 1/s of the forces" if growth == growth else "not determined from the forces"
+    )
     blocks: list[Any] = [Facts(facts)]
     if run.sizes["time"] > 1:
         blocks.append(pictures.of(overview(run), "The run over time."))
