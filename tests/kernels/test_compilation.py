@@ -13,6 +13,7 @@ from numba.core.dispatcher import Dispatcher
 
 from stridula import integration, lowering
 from stridula._kernels import march
+from stridula.integration.compiled_code import compiled_functions
 
 from .caches import KERNEL, START, incomplete_cache
 
@@ -66,3 +67,15 @@ def test_functions_called_from_python_have_a_wrapper():
     assert {"march", "solve_closed", "believed"} <= set(called)
     assert [name for name, one in called.items() if not wrapped(one)] == []
     assert not wrapped(march.begin)
+
+
+def test_functions_do_not_inherit_how_they_are_compiled():
+    """numba passes options on to functions without them: by chance, those whose caller happens to be compiled first.
+
+    So much was once inlined by force that a first run took 280 s of compilation in place of 30.
+    """
+    functions = compiled_functions("stridula._kernels")
+    assert len(functions) > 200
+    for name, function in functions.items():
+        missing = {"fastmath", "error_model", "forceinline"} - set(function.targetoptions)
+        assert not missing, name

@@ -14,12 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import stridula as st
-from stridula._kernels.books import bookkeeping
 from stridula._kernels.contact import exact as contact
-from stridula._kernels.contact import friction, solves
-from stridula._kernels.contacts import direct
-from stridula._kernels.contacts import displacements as faces
-from stridula._kernels.contacts import sweeps as contacts
 from stridula._kernels.layout import columns as layout
 from stridula._kernels.layout.contact_values import Before, Compliance, Free, Law
 from stridula.verification.prony import exponents
@@ -232,15 +227,3 @@ def test_bristles_start_where_they_are_told():
 
     assert moved(replace(law, initial_state=-float(held))) < 1e-9
     assert moved(law) > 0.1
-
-
-def test_kernels_of_the_contact_do_not_inherit_fast_arithmetic():
-    """numba passes the fast arithmetic of a caller on to functions that do not set it."""
-    functions = [
-        value
-        for module in (bookkeeping, contact, contacts, direct, faces, friction, solves)
-        for value in vars(module).values()
-        if hasattr(value, "targetoptions") and value.py_func.__module__ == module.__name__
-    ]
-    assert len(functions) > 20
-    assert {function.targetoptions.get("fastmath") for function in functions} == {False}

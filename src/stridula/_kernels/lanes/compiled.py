@@ -15,7 +15,9 @@ F = TypeVar("F", bound=Callable[..., Any])
 # Its stubs lack some options.
 _njit: Any = numba.njit
 
-STRICT: dict[str, Any] = {"cache": True, "fastmath": False, "error_model": "numpy", "no_cfunc_wrapper": True}
+# Said of each function, as numba passes it on to all that a function calls: by chance, to those that it compiles first.
+STRICT: dict[str, Any] = {"cache": True, "fastmath": False, "error_model": "numpy", "forceinline": False}
+STRICT["no_cfunc_wrapper"] = True
 # A wrapper for callers in Python takes a sixth of the compilation.
 WITHOUT_WRAPPER: dict[str, Any] = {**STRICT, "_nrt": False, "no_cpython_wrapper": True}
 INLINED: dict[str, Any] = {**WITHOUT_WRAPPER, "forceinline": True}
@@ -59,7 +61,7 @@ def overloaded(target: Callable[..., Any], returns_arrays: bool = False) -> Call
 
     Only where references are counted does numba let a function return a part of an array.
     """
-    options: Any = {"_nrt": True} if returns_arrays else {}
+    options: Any = {"forceinline": True} | ({"_nrt": True} if returns_arrays else {})
 
     def declare(choose: F) -> F:
         def chosen(*kinds: Any) -> Any:
