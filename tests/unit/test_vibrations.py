@@ -90,10 +90,25 @@ def test_a_vibration_that_dies_away_or_is_as_faint_as_the_floor_is_quiet():
     assert analysis.vibration_regime(vibration(np.zeros(TIME.size))).regime == "quiet"
 
 
-def test_a_squeal_that_ends_within_the_signal_is_squeal():
-    episode = (TIME > 0.5) & (TIME < 0.9)
-    tone = np.sin(2.0 * np.pi * 900.0 * TIME) * episode
-    assert analysis.vibration_regime(vibration(tone + 1e-3 * noise())).regime == "squeal"
+@pytest.mark.parametrize("seed", range(20))
+def test_bodies_that_ring_after_a_stroke_are_quiet(seed):
+    """Random modes, some in pairs that beat, with random damping, in noise, after what is ignored."""
+    dice, ringing = np.random.default_rng(seed), 1e-3 * noise(seed)
+    for frequency in 10.0 ** dice.uniform(2.6, 3.8, 3):
+        decay = np.where(TIME > 0.2, np.exp((0.2 - TIME) / 10.0 ** dice.uniform(-2.3, -0.6)), 0.0)
+        beat = dice.uniform(5.0, 30.0) * (dice.random() < 0.3)
+        for one in (frequency, frequency + beat):
+            ringing += dice.uniform(0.3, 1.0) * decay * np.sin(2.0 * np.pi * one * TIME)
+    assert analysis.vibration_regime(vibration(ringing)).regime == "quiet"
+
+
+@pytest.mark.parametrize(("begin", "end"), [(0.5, 0.9), (0.0, 0.5), (0.1, 0.35), (0.25, 0.45), (0.2, 0.3)])
+@pytest.mark.parametrize("strength", [1e-3, 0.05])
+def test_a_squeal_that_ends_within_the_signal_is_squeal(begin, end, strength):
+    """Also at the beginning, of which a tenth is ignored."""
+    rise = np.clip((TIME - begin) / 0.02, 0.0, 1.0) * np.exp(-np.maximum(TIME - end, 0.0) / 5e-3)
+    tone = np.sin(2.0 * np.pi * 900.0 * TIME) * rise
+    assert analysis.vibration_regime(vibration(tone + strength * noise())).regime == "squeal"
 
 
 @cache

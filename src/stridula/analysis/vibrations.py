@@ -34,8 +34,10 @@ TWICE = 0.02
 # Length of the windows of an envelope [s], and ratios of the level of bursts to the threshold and to that between them.
 SMOOTHING, HALF, CLEAR = 5e-3, 2.0, 10.0
 SHORTEST_STOP = 20e-3
-# A vibration that dies away is strongest in this share of the time at the beginning [1].
-BEGINNING = 0.2
+# A vibration that dies away is strongest in this share of the time at the beginning [1]. If it was sustained before,
+# for longer than some windows, the times in which it falls by half and to a tenth, or to twice what is left, are at
+# least in this ratio, relative to that of free vibration.
+BEGINNING, TENTH, SUSTAINED, WINDOWS = 0.2, 0.1, 1.8, 4.0
 # Percentiles of the envelope that stand for bursts and for stops.
 LOUD, SILENT = 90.0, 10.0
 MEANINGS = {
@@ -60,7 +62,8 @@ def vibration_regime(
 ) -> xr.Dataset:
     """Return the regime that a vibration alone suggests.
 
-    A vibration that dies away from the beginning on, or is no stronger than the `floor`, is quiet. Else it is squeal if
+    A vibration that dies away from the beginning on, as bodies ring after a stroke, or is no stronger than the `floor`,
+    is quiet; one that is sustained for a while at the beginning is not. Else it is squeal if
     its part above the lowest tone is tonal; stick-slip if it recurs in cycles slower than that; and judder if it does
     neither. Without the status of the contact the last two are not told apart for certain: their confidence is at most
     0.75, and that of judder without a `floor` 0.5, as steady sliding makes noise, too.
@@ -108,7 +111,8 @@ def vibration_regime(
     level = float(np.sqrt(np.mean(about**2)))
     heard = _audible(about, interval, limits)
     recurrence, cycle = _recurrence(about, interval, lowest_tone)
-    name, margin = _decided(level, still, heard, recurrence, limits)
+    lasts = _lasting(about, interval, heard, lowest_tone)
+    name, margin = _decided(level, still, heard, lasts, recurrence, limits)
     spectrum = audible_spectrum(about[None], interval, np.array([[0, about.size]]), frame, lowest_tone)
     frequency = {SQUEALS: spectrum.pitch, SLIPS: cycle}.get(name, math.nan)
     is_noise = name == JUDDERS and floor is None
@@ -171,10 +175,7 @@ def vibration_bursts(
         raise ArgumentError("signal", "be finite", signal, got="values that are not")
     if values.size * interval < 2.0 * smoothing:
         raise ArgumentError("smoothing", f"be at most {at_most(0.5 * values.size * interval)} s", smoothing)
-    filtered = scipy.signal.butter(4, lowest_tone, "highpass", fs=1.0 / interval, output="sos")
-    above_tone = scipy.signal.sosfiltfilt(filtered, values - values.mean())
-    width = max(1, 2 * round(smoothing / interval / 2.0) + 1)
-    level = np.sqrt(np.maximum(moving_mean(above_tone**2, width), 0.0))
+    level = _envelope(values, interval, smoothing, lowest_tone)
     loud, silent = np.percentile(level, (LOUD, SILENT))
     if not loud > CLEAR * silent:
         return np.empty((0, 2))
@@ -187,6 +188,38 @@ def vibration_bursts(
             spans.append([begin, end])
     inside = [span for span in spans if span[0] > 0 and span[1] < values.size]
     return np.asarray(float(signal["time"].values[0]) + interval * np.array(inside, dtype=float).reshape(-1, 2))
+
+
+def _envelope(values: Array, interval: float, smoothing: float, lowest_tone: float) -> Array:
+    """Return the root mean square of a vibration above the lowest tone over a centred window."""
+    filtered = scipy.signal.butter(4, lowest_tone, "highpass", fs=1.0 / interval, output="sos")
+    above_tone = scipy.signal.sosfiltfilt(filtered, values - values.mean())
+    width = max(1, 2 * round(smoothing / interval / 2.0) + 1)
+    return np.sqrt(np.maximum(moving_mean(above_tone**2, width), 0.0))
+
+
+def _lasting(values: Array, interval: float, heard: Frames, lowest_tone: float) -> float:
+    """Return the margin by which a vibration does not die away from the beginning on, in factors of two."""
+    if not heard.amplitude.size or not math.isfinite(heard.growth):
+        return math.inf
+    if np.argmax(heard.amplitude) >= BEGINNING * heard.amplitude.size:
+        return math.inf
+    return max(above(heard.growth, KEPT), _sustained(_envelope(values, interval, SMOOTHING, lowest_tone), interval))
+
+
+def _sustained(level: Array, interval: float) -> float:
+    """Return the margin by which an envelope falls late and fast, not as a free vibration, in factors of two.
+
+    A free vibration takes the times ``ln 2`` to ``ln 10`` to fall by half and to a tenth.
+    """
+    top = float(level.max())
+    lowest = max(TENTH, 2.0 * float(np.median(level[level.size // 2 :])) / top)
+    loud, heard = (np.flatnonzero(level >= share * top) for share in (0.5, lowest))
+    if lowest >= 0.5 or loud.size * interval <= WINDOWS * SMOOTHING:
+        return -math.inf
+    # Of two modes that beat the last times tell, of strokes that follow each other the total ones.
+    share = min((loud[-1] - loud[0]) / (heard[-1] - loud[0]), loud.size / heard.size)
+    return math.log2(share * math.log(1.0 / lowest) / math.log(2.0) / SUSTAINED)
 
 
 def _audible(values: Array, interval: float, limits: Thresholds) -> Frames:
@@ -232,12 +265,12 @@ def _cycle(values: Array, interval: float, lowest_tone: float) -> tuple[float, f
     return min(max(highest, 0.0), 1.0), 1.0 / (at * interval)
 
 
-def _decided(level: float, floor: float, heard: Frames, recurrence: float, limits: Thresholds) -> tuple[str, float]:
+def _decided(
+    level: float, floor: float, heard: Frames, lasting: float, recurrence: float, limits: Thresholds
+) -> tuple[str, float]:
     """Return the regime and its margin, in factors of two from the nearest threshold."""
     loud = above(level, 2.0 * floor) if floor > 0.0 else (math.inf if level > 0.0 else -math.inf)
-    grown = above(heard.growth, KEPT)
-    begins = heard.amplitude.size and np.argmax(heard.amplitude) < BEGINNING * heard.amplitude.size
-    lasts = min(loud, grown if begins and math.isfinite(heard.growth) else math.inf)
+    lasts = min(loud, lasting)
     if lasts < 0.0:
         return QUIET, -lasts
     audible = above(heard.level / level, limits.faint)
