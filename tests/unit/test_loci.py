@@ -160,7 +160,24 @@ def test_figure_shows_modes_bands_and_critical_values():
     above, below = figure.axes
     assert below.get_xlabel() == "friction"
     assert above.get_ylabel() == "frequency [Hz]"
-    assert [text.get_text() for text in above.get_legend().get_texts()] == ["decays", "grows", "jammed"]
+    assert [text.get_text() for text in above.get_legend().get_texts()] == [
+        "decays, not within a period",
+        "grows",
+        "jammed",
+    ]
     assert any("0.877" in text.get_text() for text in above.texts)
     # The loci themselves, thin and thick, then one line for each critical value.
     assert len(above.lines) >= 2 * loci.sizes["mode"] + 1
+
+
+def test_modes_that_decay_within_a_period_are_not_drawn_and_the_legend_says_so():
+    """A dashpot of contacts that decays at a rate of 1e8 1/s would hide all that vibrates."""
+    loci = st.root_loci(hoffmann_at, "friction", np.linspace(0.0, 1.0, 5))
+    above = plot.root_loci(loci).axes[0]
+    assert [one.get_text() for one in above.get_legend().get_texts()] == ["decays", "grows"]
+    swift = loci.assign(frequency=loci["frequency"].copy(), growth_rate=loci["growth_rate"].copy())
+    swift["frequency"][:, 1], swift["growth_rate"][:, 1] = 1e7, -1e8
+    swift["unstable"][:, 1] = False
+    above = plot.root_loci(swift).axes[0]
+    assert above.get_ylim()[1] < 2.0 * float(loci["frequency"].max())
+    assert above.get_legend().get_texts()[0].get_text() == "decays, not within a period"

@@ -23,8 +23,9 @@ BANDS = {"held": "#cccccc", "lifted off": "#56b4e9", "jammed": "#cc79a7"}
 def root_loci(loci: xr.Dataset, critical: Sequence[xr.Dataset] = ()) -> Figure:
     """Draw frequencies and growth rates of the modes of sliding over a parameter.
 
-    Modes that grow are drawn thick and in another colour. Modes lock in where two frequencies merge. Values
-    without steady sliding have a band in the background.
+    Modes that grow are drawn thick and in another colour. Modes lock in where two frequencies merge. Modes that decay
+    by a factor e within a period are not drawn, which the legend says. Values without steady sliding have a band in the
+    background.
 
     Parameters
     ----------
@@ -50,6 +51,7 @@ def root_loci(loci: xr.Dataset, critical: Sequence[xr.Dataset] = ()) -> Figure:
     if not isinstance(critical, Sequence) or not all(map(_is_critical, critical)):
         raise ArgumentError("critical", "be a list of results of critical_value", critical)
     key = str(loci["equilibrium"].dims[0])
+    loci, hidden = _without_decays(loci)
     figure = Figure(figsize=(8.0, 7.0), layout="constrained", dpi=120)
     above, below = figure.subplots(2, 1, sharex=True)
     for axes, name in ((above, "frequency"), (below, "growth_rate")):
@@ -65,12 +67,19 @@ def root_loci(loci: xr.Dataset, critical: Sequence[xr.Dataset] = ()) -> Figure:
     _name_critical(above, loci[key].values, critical)
     below.set_xlabel(with_unit(key, loci[key]))
     present = set(loci["equilibrium"].values)
-    _legend(above, [kind for kind in BANDS if kind in present])
+    _legend(above, [kind for kind in BANDS if kind in present], hidden)
     return figure
 
 
 def _is_critical(one: object) -> bool:
     return isinstance(one, xr.Dataset) and {"value", "frequency"} <= set(one.variables) and "beyond" in one.attrs
+
+
+def _without_decays(loci: xr.Dataset) -> tuple[xr.Dataset, bool]:
+    """Return the modes without those that decay within a period, of any frequency, and whether there are any."""
+    names = ("frequency", "growth_rate")
+    vibrates = loci["unstable"] | ~(loci["growth_rate"] < -loci["frequency"])
+    return loci.assign({name: loci[name].where(vibrates) for name in names}), not bool(vibrates.all())
 
 
 def _draw_modes(axes: Axes, loci: xr.Dataset, key: str, name: str) -> None:
@@ -121,8 +130,9 @@ def _scale_growth(axes: Axes, loci: xr.Dataset) -> None:
     axes.axhline(0.0, color="0.3", linewidth=0.8)
 
 
-def _legend(axes: Axes, kinds: Sequence[str]) -> None:
-    axes.plot([], [], color=LINE, linewidth=0.8, label="decays")
+def _legend(axes: Axes, kinds: Sequence[str], hidden: bool) -> None:
+    decays = "decays, not within a period" if hidden else "decays"
+    axes.plot([], [], color=LINE, linewidth=0.8, label=decays)
     axes.plot([], [], color=UNSTABLE, linewidth=2.2, label="grows")
     for kind in kinds:
         axes.fill_between([], [], color=BANDS[kind], alpha=0.35, linewidth=0, label=kind)

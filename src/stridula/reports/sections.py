@@ -155,17 +155,16 @@ def loci_section(design: Design, pictures: Pictures) -> Section:
     limit = highest_cutoff(design.system)
     words = f"Modes over {key}; those that grow are thick. Those that decay within a period"
     words += f" or above the highest cutoff, {limit:.5g} Hz," if np.isfinite(limit) else ""
-    picture = pictures.of(draw_loci(_without_decays(loci, limit), critical), f"{words} are left out.")
+    picture = pictures.of(draw_loci(_below(limit, loci), critical), f"{words} are left out.")
     blocks: list[Any] = [Lines(changes), picture]
     if bool(loci["unstable"].any()):
         blocks.append(_over_table(loci, key))
     return Section(title, blocks, {f"over {key}": changes[0]})
 
 
-def _without_decays(loci: xr.Dataset, limit: float) -> xr.Dataset:
-    """Return root loci without modes that hardly vibrate, or that decay above a frequency [Hz]."""
-    frequency = loci["frequency"]
-    seen = loci["unstable"] | ((frequency <= limit) & (loci["growth_rate"] >= -frequency))
+def _below(limit: float, loci: xr.Dataset) -> xr.Dataset:
+    """Return root loci without modes that decay above a frequency [Hz]."""
+    seen = loci["unstable"] | (loci["frequency"] <= limit)
     return loci.assign({name: loci[name].where(seen) for name in ("frequency", "growth_rate")})
 
 
