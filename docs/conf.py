@@ -124,6 +124,7 @@ FIGURES = (
     "root_loci",
     "mode_probability",
     "mode_sensitivity",
+    "calibration",
     "regime_map",
     "squeal_map",
     "squeal_events",

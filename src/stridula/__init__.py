@@ -134,6 +134,7 @@ _HOME = {
         "agreement",
         "basin",
         "calibrate",
+        "calibrate_to",
         "check_step",
         "critical_value",
         "ensemble",

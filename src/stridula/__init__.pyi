@@ -164,6 +164,7 @@ from .studies import Target as Target
 from .studies import agreement as agreement
 from .studies import basin as basin
 from .studies import calibrate as calibrate
+from .studies import calibrate_to as calibrate_to
 from .studies import check_step as check_step
 from .studies import critical_value as critical_value
 from .studies import ensemble as ensemble

@@ -60,6 +60,7 @@ FEW = {
     "smallest_change": {"most": 50, "points": 2},
     "report": {"run": False, "effects": False, "check": False},
     "calibrate": {"population": 5, "generations": 1, "duration": 1e-3},
+    "calibrate_to": {"population": 5, "generations": 1, "duration": 1e-3},
 }
 
 

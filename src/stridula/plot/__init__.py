@@ -17,6 +17,7 @@ _HOME = {
     "basin": "dynamics",
     "bifurcation": "branches",
     "bodies": "space_films",
+    "calibration": "calibrations",
     "directivity": "directivities",
     "friction": "laws",
     "mac": "shape_agreements",

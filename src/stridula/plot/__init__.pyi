@@ -3,6 +3,7 @@
 from .bands import third_octaves as third_octaves
 from .branches import bifurcation as bifurcation
 from .branches import multipliers as multipliers
+from .calibrations import calibration as calibration
 from .colours import LINE as LINE
 from .colours import LINES as LINES
 from .colours import STATUS_COLOURS as STATUS_COLOURS

@@ -18,6 +18,7 @@ _HOME = {
     "basin": "basins",
     "StepCheck": "step_checks",
     "calibrate": "calibration",
+    "calibrate_to": "recorded",
     "check_step": "step_checks",
     "critical_value": "loci",
     "ensemble": "ensembles",

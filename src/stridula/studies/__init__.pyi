@@ -20,6 +20,7 @@ from .points import LatinHypercube as LatinHypercube
 from .points import Range as Range
 from .probabilities import regime_probability as regime_probability
 from .random_points import RandomPoints as RandomPoints
+from .recorded import calibrate_to as calibrate_to
 from .smallest_changes import smallest_change as smallest_change
 from .sobol import sensitivity as sensitivity
 from .step_checks import StepCheck as StepCheck

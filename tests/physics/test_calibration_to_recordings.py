@@ -1,0 +1,172 @@
+"""Calibration to recordings: parameters of rigs come back within their intervals, and what is unknown is said."""
+
+from __future__ import annotations
+
+from inspect import signature
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stridula as st
+from stridula import analysis, plot
+from stridula.studies.signal_measures import HarmonicLevel, bands_of, shape_of
+
+RATE = 5e3
+
+
+def shaken(law, damping, stiffness=2e4, mass=0.5, speed=0.05, force=0.0):
+    """A mass on a spring and a dashpot on a belt, with a harmonic force."""
+    slider = st.PointMass(mass)
+    contact = st.PointContact(slider.centre, st.RigidTrack(velocity=speed), friction=law)
+    drives = [st.Force(slider.centre, y=-30.0), st.Force(slider.centre, x=force, history=st.Harmonic(28.0))]
+    spring = st.Spring(slider.centre, stiffness=stiffness, direction="x")
+    dashpot = st.Dashpot(slider.centre, coefficient=damping, direction="x")
+    settings = {"duration": 3.0, "sample_rate": RATE, "probes": [st.Velocity(slider.centre, "x")]}
+    return st.System(contact, drives if force else drives[:1], [spring, dashpot]), settings
+
+
+def damped(friction=0.4, damping=2.0):
+    return shaken(st.Stribeck(friction, 0.6 * friction, 0.05), damping)
+
+
+def static(friction=0.5, damping=3.0):
+    return shaken(st.StaticKinetic(friction, 0.7 * friction), damping, speed=0.1)
+
+
+def stiff(friction=0.3, stiffness=3e4):
+    return shaken(st.Stribeck(friction, 0.5 * friction, 0.1), 4.0, stiffness=stiffness, speed=0.03)
+
+
+def driven(friction=0.2, damping=8.0):
+    return shaken(st.Coulomb(friction), damping, speed=0.0, force=20.0)
+
+
+def heavy(friction=0.35, mass=0.8):
+    return shaken(st.Stribeck(friction, 0.4 * friction, 0.2), 3.0, mass=mass, speed=0.08)
+
+
+RIGS = {
+    damped: {"friction": (0.1, 0.8), "damping": (0.0, 10.0)},
+    static: {"friction": (0.1, 0.9), "damping": (0.0, 20.0)},
+    stiff: {"friction": (0.1, 0.6), "stiffness": st.Range("10 N/mm", "60 N/mm", logarithmic=True)},
+    driven: {"friction": (0.02, 0.5), "damping": (0.0, 40.0)},
+    heavy: {"friction": (0.1, 0.7), "mass": (0.3, 2.0)},
+}
+
+
+def recorded(rig, share, seed=0, **words):
+    """Return the steady vibration of a rig with noise, a share of its root mean square."""
+    system, settings = rig(**words)
+    values = st.simulate(system, **settings)["velocity"].values[int(0.3 * RATE) :, 0]
+    noise = share * values.std() * np.random.default_rng(seed).standard_normal(values.size)
+    return recording(values + noise)
+
+
+def recording(values):
+    return xr.DataArray(values, {"time": np.arange(len(values)) / RATE}, ("time",), attrs={"units": "m/s"})
+
+
+def test_friction_and_damping_come_back_within_their_intervals():
+    """Of 30 intervals of 95 %, fewer than 25 hold the truth in 3 of 1000 such trials."""
+    inside, narrow = [], []
+    for rig, ranges in RIGS.items():
+        truth = {name: one.default for name, one in signature(rig).parameters.items()}
+        for seed, share in enumerate((0.01, 0.03, 0.1)):
+            found = st.calibrate_to(recorded(rig, share, seed), rig, ranges, signal="velocity")
+            assert (found["lowest"] <= found["low"]).all()
+            assert (found["high"] <= found["highest"]).all()
+            for name, value in truth.items():
+                one = found.sel(parameter=name)
+                scale = 1e3 if name == "stiffness" else 1.0
+                inside.append(float(one["low"]) <= value / scale <= float(one["high"]))
+                narrow.append(bool(one["determined"]))
+    assert sum(inside) >= 25
+    assert sum(narrow) >= 20
+
+
+def test_what_a_recording_does_not_determine_is_said():
+    """A parameter without any effect."""
+    found = st.calibrate_to(
+        recorded(damped, 0.01),
+        lambda friction, load: shaken(st.Stribeck(friction, 0.6 * friction, 0.05), 2.0),
+        {"friction": (0.1, 0.8), "load": (1.0, 2.0)},
+        signal="velocity",
+    )
+    assert found["determined"].values.tolist() == [True, False]
+    assert found.attrs["undetermined"] == "load (its interval is wider than half of its range)"
+    low, high = found.sel(parameter="load")[["low", "high"]].to_array().values
+    assert high - low > 0.5
+    figure = plot.calibration(found)
+    assert "load" in figure.get_suptitle()
+    assert len(figure.axes[1].get_yticks()) == found.sizes["measure"]
+
+
+def test_a_model_that_cannot_vibrate_so_is_doubted():
+    tone = recording(np.sin(2.0 * np.pi * 400.0 * np.arange(10000) / RATE))
+    with pytest.warns(st.DoubtfulValue, match="does not reach the recording"):
+        found = st.calibrate_to(tone, driven, {"friction": (0.1, 0.2)}, signal="velocity", population=5, generations=1)
+    assert float(found["misfit"]) > 5.0
+
+
+def test_measures_of_ones_own_need_no_tone():
+    """The share of time in which a velocity is that of the belt, with a deviation of one's own."""
+
+    def sticks(velocity):
+        return float((abs(velocity - 0.05) < 2e-3).mean())
+
+    measures = {"sticks": sticks, "frequency": analysis.dominant_frequency}
+    found = st.calibrate_to(
+        recorded(damped, 0.0), damped, {"friction": (0.3, 0.5)}, signal="velocity", measures=measures,
+        deviations={"sticks": 0.01}, population=8, generations=4,
+    )  # fmt: skip
+    assert found["measure"].values.tolist() == ["sticks", "frequency"]
+    assert float(found["deviation"][0]) == 0.01
+    assert float(found["low"][0]) < 0.4 < float(found["high"][0])
+
+
+@pytest.mark.parametrize("level", [0.0, 0.03, 0.3])
+def test_levels_of_harmonics_are_those_without_the_noise(level):
+    time = np.arange(20000) / RATE
+    values = np.sin(2.0 * np.pi * 60.3 * time) + 0.1 * np.sin(2.0 * np.pi * 120.6 * time + 1.0)
+    noisy = recording(values + level * np.random.default_rng(3).standard_normal(time.size))
+    assert HarmonicLevel(1)(noisy) == pytest.approx(10.0 * np.log10(0.5), abs=0.05)
+    assert HarmonicLevel(2)(noisy) == pytest.approx(10.0 * np.log10(0.005), abs=0.6)
+    assert list(shape_of(noisy)) == ["harmonic_1", "harmonic_2"]
+
+
+def test_bands_are_those_of_the_strongest():
+    """Noise of one octave: no band two octaves away."""
+    dice = np.random.default_rng(0)
+    spectrum = np.zeros(10001, complex)
+    spectrum[1000:2000] = dice.standard_normal(1000) + 1j * dice.standard_normal(1000)
+    values = np.fft.irfft(spectrum)
+    found = [one.centre for one in bands_of(recording(values)).values()]
+    step = RATE / values.size
+    assert 700.0 * step < min(found) < 1100.0 * step
+    assert 1900.0 * step < max(found) < 3000.0 * step
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"signal": "position"}, "signal must be a variable of the record"),
+        ({"recording": recording(np.zeros(100))}, "recording must be finite and vibrate"),
+        ({"parts": 2}, "parts must be"),
+        ({"deviations": {"pitch": 1.0}}, "deviations must be of"),
+        ({"measures": {"level": 3}}, "measures must be functions of a vibration by name"),
+        ({"measures": {"one": lambda signal: 0.0}}, "deviations must be given for one"),
+        ({"measures": {"none": lambda signal: float("nan")}}, "recording must have these measures"),
+        ({"ranges": {"frition": (0.1, 0.2)}}, "friction"),
+    ],
+)
+def test_wrong_arguments_are_named(change, message):
+    tone = recording(np.sin(2.0 * np.pi * 30.0 * np.arange(10000) / RATE))
+    words = {"recording": tone, "source": driven, "ranges": {"friction": (0.1, 0.2)}, "signal": "velocity"}
+    with pytest.raises(ValueError, match=message):
+        st.calibrate_to(**(words | {"population": 5, "generations": 1} | change))
+
+
+def test_a_figure_of_anything_else_is_refused():
+    with pytest.raises(ValueError, match="be the result of calibrate_to"):
+        plot.calibration(xr.Dataset())
