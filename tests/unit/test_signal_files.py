@@ -362,6 +362,10 @@ def test_a_calibration_needs_units_and_units_a_calibration(tmp_path):
     for given in ({"calibration": {"v": 2.0}}, {"units": {"v": "Pa"}}):
         with pytest.raises(ValueError, match=r"^(units|calibration) must be by names of channels, 'u', 'F', got 'v'$"):
             st.read_signals(path, **given)
+    with pytest.raises(
+        ValueError, match=r"^calibration must be left out for 'F', which the file has in N: .* got 2\.0$"
+    ):
+        st.read_signal(path, "F", units="N", calibration=2.0)
     one = st.read_signal(path, "F", calibration={"u": 10.0}, units={"u": "Pa"})
     assert one.attrs["units"] == "N"
     both = st.read_signals(path, calibration={"u": 10.0}, units={"u": "Pa"})

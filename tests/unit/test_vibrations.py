@@ -57,6 +57,22 @@ def test_pulses_that_recur_slowly_are_stick_slip(rate):
     assert "separates" in found.attrs["unknown"]
 
 
+def test_a_harmonic_of_slow_cycles_is_no_certain_squeal():
+    """The seventh one of 98 Hz, in an acceleration of stick-slip; a tone in noise is certain, as is one of a siren."""
+    slow = sum(
+        np.sin(2.0 * np.pi * 98.0 * k * TIME + k) * (1.0, 0.3, 0.5, 0.4, 0.5, 0.9, 1.5)[k - 1] for k in range(1, 8)
+    )
+    found = analysis.vibration_regime(vibration(slow + 0.02 * noise()))
+    assert found.regime == "squeal"
+    assert float(found.confidence) == 0.75
+    assert "a harmonic of cycles at 98.0" in found.attrs["unknown"]
+    tone = np.sin(2.0 * np.pi * 685.0 * TIME)
+    for values in (tone + 0.02 * noise(), tone + 0.4 * noise(), tone * (1.0 + 0.3 * np.sin(2.0 * np.pi * 10.0 * TIME))):
+        found = analysis.vibration_regime(vibration(values))
+        assert float(found.confidence) > 0.9
+        assert "harmonic" not in found.attrs["unknown"]
+
+
 def test_pulses_at_random_are_judder():
     found = analysis.vibration_regime(vibration(pulses(60.0, seed=4) + 0.01 * noise()))
     assert found.regime == "judder"

@@ -29,6 +29,9 @@ UNKNOWN = {
 NOISE = "; without a floor, whether it is more than the noise of steady sliding or of the sensor"
 # Similarity of a vibration to itself one cycle later, from which it recurs [1], and longest cycle over its length [1].
 RECURS, LONGEST = 0.5, 0.4
+# Share of a tone that does not repeat itself from which it may be a harmonic of slow cycles [1], and how many times
+# more that is than one cycle later.
+IMPURE, MORE_EXACT = 0.1, 4.0
 # Relative difference of the frequency of an envelope from twice that of its vibration, up to which it is just this.
 TWICE = 0.02
 # Length of the windows of an envelope [s], and ratios of the level of bursts to the threshold and to that between them.
@@ -63,10 +66,11 @@ def vibration_regime(
     """Return the regime that a vibration alone suggests.
 
     A vibration that dies away from the beginning on, as bodies ring after a stroke, or is no stronger than the `floor`,
-    is quiet; one that is sustained for a while at the beginning is not. Else it is squeal if
-    its part above the lowest tone is tonal; stick-slip if it recurs in cycles slower than that; and judder if it does
-    neither. Without the status of the contact the last two are not told apart for certain: their confidence is at most
-    0.75, and that of judder without a `floor` 0.5, as steady sliding makes noise, too.
+    is quiet; one that is sustained for a while at the beginning is not. Else it is squeal if its part above the lowest
+    tone is tonal; stick-slip if it recurs in cycles slower than that; and judder if it does neither. Without the status
+    of the contact the last two are not told apart for certain: their confidence is at most 0.75, and that of judder
+    without a `floor` 0.5, as steady sliding makes noise, too. That of squeal is at most 0.75 if its tone may be a
+    harmonic of slow cycles, which an acceleration lifts above them.
 
     Parameters
     ----------
@@ -115,9 +119,10 @@ def vibration_regime(
     name, margin = _decided(level, still, heard, lasts, recurrence, limits)
     spectrum = audible_spectrum(about[None], interval, np.array([[0, about.size]]), frame, lowest_tone)
     frequency = {SQUEALS: spectrum.pitch, SLIPS: cycle}.get(name, math.nan)
-    is_noise = name == JUDDERS and floor is None
-    most = 0.5 if is_noise else UNSEEN if name in (SLIPS, JUDDERS) else 1.0
-    unknown = f"{UNKNOWN[name]}{NOISE}" if is_noise else UNKNOWN[name]
+    is_noise, buzzes = name == JUDDERS and floor is None, name == SQUEALS and _buzzes(heard.tonality, recurrence)
+    most = 0.5 if is_noise else UNSEEN if name in (SLIPS, JUDDERS) or buzzes else 1.0
+    harmonic = f"; whether the tone is a harmonic of cycles at {cycle:.4g} Hz, which repeat themselves more exactly"
+    unknown = UNKNOWN[name] + (NOISE if is_noise else harmonic if buzzes else "")
     numbers = {
         "confidence": min(0.5 + 0.5 * min(1.0, margin), most),
         "tonality": heard.tonality,
@@ -240,6 +245,11 @@ def _recurrence(values: Array, interval: float, lowest_tone: float) -> tuple[flo
     own, found = _cycle(values, interval, lowest_tone), _cycle(size - size.mean(), interval, lowest_tone)
     is_twice = own[0] >= RECURS and abs(found[1] / own[1] - 2.0) < TWICE
     return own if is_twice else max(own, found, key=lambda pair: pair[0])
+
+
+def _buzzes(tonality: float, recurrence: float) -> bool:
+    """Return whether a vibration is far more similar to itself one slow cycle later than one period of its tone."""
+    return 1.0 - tonality > max(IMPURE, MORE_EXACT * (1.0 - recurrence))
 
 
 def _cycle(values: Array, interval: float, lowest_tone: float) -> tuple[float, float]:

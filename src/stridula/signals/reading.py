@@ -209,6 +209,9 @@ def _calibrated(path: Any, names: list[str], found: list[Channel], calibration: 
             size = finite("calibration", factor)
             if size == 0.0:
                 raise ArgumentError("calibration", "differ from 0", factor)
+            if one.units == plain_units(str(word)):
+                allowed = f"be left out for {one.name!r}, which the file has in {one.units}: it would be scaled twice"
+                raise ArgumentError("calibration", allowed, factor)
             one = replace(one, values=one.values * size, meaning="")
         if word is not None:
             plain = plain_units(word)
