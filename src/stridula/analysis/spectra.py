@@ -76,10 +76,7 @@ def dominant_frequency(signal: xr.DataArray, intervals: Array | None = None, low
     if peaks.size == 0:
         return float("nan")
     top = peaks[np.argmax(energy[peaks])]
-    left, middle, right = np.log(energy[top - 1 : top + 2] + 1e-300)
-    curvature = left - 2.0 * middle + right
-    shift = 0.5 * (left - right) / curvature if curvature < 0.0 else 0.0
-    return float(frequency[top] + shift * frequency[1])
+    return _refined(frequency, energy, int(top))
 
 
 def tones(
@@ -88,7 +85,7 @@ def tones(
     """Return the tones that stand out of the spectrum of a signal, the strongest first.
 
     The energy spectrum is averaged over bands of `resolution`; a tone is a local maximum whose prominence is at least
-    `prominence`.
+    `prominence`, and has the frequency of the strongest line of its band.
 
     Parameters
     ----------
@@ -120,7 +117,23 @@ def tones(
     level = 10.0 * np.log10(smooth / max(float(smooth.max()), 1e-300) + 1e-30)
     peaks, _ = find_peaks(level, prominence=prominence)
     order = peaks[np.argsort(-level[peaks], kind="stable")]
-    return frequency[order], level[order]
+    return np.array([_line(frequency, energy, frequency[one], resolution) for one in order]), level[order]
+
+
+def _line(frequency: Array, energy: Array, about: float, width: float) -> float:
+    """Return the frequency of the strongest line in a band [Hz]."""
+    first, end = np.searchsorted(frequency, (about - 0.5 * width, about + 0.5 * width))
+    return _refined(frequency, energy, int(first + np.argmax(energy[first : max(end, first + 1)])))
+
+
+def _refined(frequency: Array, energy: Array, top: int) -> float:
+    """Return the frequency of a local maximum [Hz], that of the parabola through its logarithm."""
+    if not 0 < top < energy.size - 1:
+        return float(frequency[top])
+    left, middle, right = np.log(energy[top - 1 : top + 2] + 1e-300)
+    curvature = left - 2.0 * middle + right
+    shift = 0.5 * (left - right) / curvature if curvature < 0.0 else 0.0
+    return float(frequency[top] + np.clip(shift, -1.0, 1.0) * frequency[1])
 
 
 def frequency_resolution(signal: xr.DataArray, intervals: Array | None = None) -> float:
