@@ -72,3 +72,11 @@ plot.timeline(run, ["gap", "normal_force", "landings"])
 
 # %%
 plot.surface(analysis.surface(run, contacts[0]), span=(0.025, 0.03))
+
+# %%
+# Report
+# ------
+# A page to hand on: drawing, inputs, modes over friction, this run and its sound, and which parameters matter.
+
+st.report(run, check=False).save("deck.html")
+print(f"{len(Path('deck.html').read_bytes()) // 1000} kB")

@@ -144,7 +144,7 @@ def count(name: str, value: Any, low: int = 1, high: int | None = None) -> int:
 
 def choice(name: str, value: Any, allowed: Sequence[str]) -> str:
     """Return `value` if it is one of the words in `allowed`."""
-    if value not in allowed:
+    if not isinstance(value, str) or value not in allowed:
         got = f"{brief(value)}{suggestion(value, allowed)}"
         raise ArgumentError(name, f"be one of {', '.join(allowed)}", value, got=got)
     return str(value)

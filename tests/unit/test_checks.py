@@ -234,3 +234,10 @@ def test_many_bodies_are_not_all_listed(tmp_path):
     found = next(problem for problem in caught.value.problems if problem.startswith("contacts.0.tip.body"))
     assert re.search(r"must be one of tooth-0-of-the-comb, .* and \d+ others, got 'pad'", found)
     assert len(found) <= 300
+
+
+def test_an_array_in_place_of_a_word_is_refused_in_one_line():
+    """Its comparison with words has no truth value."""
+    mesh = st.SolidMesh.block((0.1, 0.02, 0.01), (2, 1, 1))
+    with pytest.raises(st.ArgumentError, match=r"be one of left, right, .*, got a ndarray"):
+        st.SolidBody(mesh, st.Material(2e11, 7800.0), fixed=[mesh.nodes[:, 0] < 1e-6], cutoff=3e4)

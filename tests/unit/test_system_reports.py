@@ -152,6 +152,18 @@ def test_a_run_has_the_card_of_the_run_and_its_sound():
     assert "data:audio/wav;base64,UklGR" in html
 
 
+def test_a_record_of_a_body_with_a_mesh_may_be_reported():
+    """Its arrays are inputs by their shape."""
+    mesh = st.SolidMesh.block((0.1, 0.02, 0.01), (4, 1, 1))
+    bar = st.SolidBody(mesh, st.Material(2e11, 7800.0), fixed=["left"], cutoff=3e4, damping=0.01)
+    tip = bar.at((0.1, 0.01, 0.005))
+    contact = st.PointContact(tip, st.RigidTrack(velocity=0.1), friction=st.Coulomb(0.3))
+    run = st.simulate(st.System(contact, [st.Force(tip, y=-5.0)]), 0.01)
+    page = st.report(run, sound=False, effects=False, check=False)
+    assert page.titles == ("Record",)
+    assert "an array of" in page.html
+
+
 def test_sections_that_do_not_apply_say_so():
     html = st.report("belt", duration=0.5, check=False).html
     assert "None: no body of the system radiates sound." in html

@@ -215,7 +215,7 @@ def design_of(source: Any, options: Options) -> Design:
     tables, problems = overridden(written, changes)
     if problems:
         raise ScenarioError(problems)
-    name = source if isinstance(source, (str, Path)) else type(source).__name__
+    name = source if isinstance(source, (str, Path)) else "Record" if isinstance(source, xr.Dataset) else "System"
     design = Design(str(name), source, tables, None if changes else record, options)
     # Errors of the scenario come before the first computation.
     _ = design.scenario, design.si

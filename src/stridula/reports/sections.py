@@ -95,6 +95,8 @@ def _inputs(design: Design, value: Any, path: outline.Path) -> Iterator[tuple[st
 
 def _input_words(design: Design, value: Any, path: outline.Path) -> str:
     """Return an input with its unit, as it is written or in SI."""
+    if isinstance(value, np.ndarray):
+        return f"an array of {' x '.join(map(str, value.shape))}"
     written = outline.look_up(design.tables, path)
     if isinstance(value, str):
         return "an array" if PACKED.fullmatch(value) else value
