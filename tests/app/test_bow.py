@@ -111,7 +111,7 @@ def test_a_force_keeps_its_sense_and_one_that_is_zero_begins_small(tmp_path):
         ("setting", "judder", {}),
         ("case", "belt", {}),
         ("value", "judder", {"other": 1}),
-        ("undo", "squeal", {}),
+        ("undo", "glass", {}),
         ("link", "belt", {}),
     ],
 )

@@ -169,12 +169,12 @@ def test_a_browser_without_drawing_in_space_reports_it_and_plays(browsing):
 
 def test_a_drawing_that_could_not_be_loaded_is_tried_again(browsing):
     browsing.complains = False
-    browsing.context.route("**/three.module.min.js", lambda route: route.abort())
+    browsing.context.route("**/three.module.min.js*", lambda route: route.abort())
     page = browsing.open("#case=glass")
     missing = page.locator("#space-missing")
     missing.wait_for(state="visible")
     assert missing.text_content().startswith("The drawing in space could not be loaded.")
-    browsing.context.unroute("**/three.module.min.js")
+    browsing.context.unroute("**/three.module.min.js*")
     page.evaluate(SLIDER)
     until(page, DRAWN)
     assert missing.is_hidden()

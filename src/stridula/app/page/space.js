@@ -43,7 +43,9 @@ export class Space {
 
   async #load() {
     try {
-      this.three ??= await import("./vendor/three.module.min.js");
+      // A module that could not be loaded is asked for by another address: browsers remember the failure of the first.
+      this.asked = (this.asked ?? 0) + 1;
+      this.three ??= await import(`./vendor/three.module.min.js${this.asked > 1 ? `?${this.asked}` : ""}`);
       // Errors are reported here and not by the library.
       this.isSlow = isSoftware();
       const context = this.canvas.getContext("webgl2", { antialias: !this.isSlow, alpha: true });
