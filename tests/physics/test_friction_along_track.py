@@ -11,6 +11,13 @@ from scipy.integrate import solve_ivp
 import stridula as st
 
 
+def test_the_text_shows_a_patch_between_equal_ends():
+    dry, oily = st.Coulomb(0.5), st.Coulomb(0.1)
+    assert str(st.FrictionAlongTrack([0.0, 0.1, 0.2], [dry, oily, dry])) == "0.5, 0.1, 0.5 at 3 places from 0 to 0.2 m"
+    patch = st.FrictionAlongTrack([0.0, 0.01, 0.1, 0.11, 2.0], [dry, oily, oily, dry, dry])
+    assert str(patch) == "0.5 to 0.5, held by 0.1 to 0.5, at 5 places from 0 to 2 m"
+
+
 def law_of(random, periodic, kind):
     """A law of a kind at random places, with a function of place and slip speed."""
     count = int(random.integers(3, 7))

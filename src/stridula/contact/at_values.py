@@ -14,6 +14,9 @@ from .between import Between
 from .friction_law import FrictionLaw
 from .linearised import Linearised
 
+# Most laws that the text of a friction shows one by one.
+MOST_SHOWN = 4
+
 
 class FrictionAtValues(FrictionLaw):
     """Friction that is one of some laws, or lies between two of them.
@@ -128,4 +131,9 @@ class FrictionAtValues(FrictionLaw):
 
     def __str__(self) -> str:
         ends = f"{self.values[0]:.4g} to {self.values[-1]:.4g} {self.unit}"
-        return f"{self.laws[0]} to {self.laws[-1]} at {counted(len(self.laws), self.over)} from {ends}"
+        if len(self.laws) <= MOST_SHOWN:
+            laws = ", ".join(map(str, self.laws))
+        else:
+            held = [one.holding for one in self.laws]
+            laws = f"{self.laws[0]} to {self.laws[-1]}, held by {min(held):.4g} to {max(held):.4g},"
+        return f"{laws} at {counted(len(self.laws), self.over)} from {ends}"
