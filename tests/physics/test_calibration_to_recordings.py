@@ -63,8 +63,8 @@ def recorded(rig, share, seed=0, **words):
     return recording(values + noise)
 
 
-def recording(values):
-    return xr.DataArray(values, {"time": np.arange(len(values)) / RATE}, ("time",), attrs={"units": "m/s"})
+def recording(values, units="m/s"):
+    return xr.DataArray(values, {"time": np.arange(len(values)) / RATE}, ("time",), attrs={"units": units})
 
 
 def test_friction_and_damping_come_back_within_their_intervals():
@@ -152,6 +152,10 @@ def test_bands_are_those_of_the_strongest():
     [
         ({"signal": "position"}, "signal must be a variable of the record"),
         ({"recording": recording(np.zeros(100))}, "recording must be finite and vibrate"),
+        (
+            {"recording": recording(np.sin(np.arange(9000.0)), "m/s2")},
+            "signal must be in m/s2, as the recording, got m/s",
+        ),
         ({"parts": 2}, "parts must be"),
         ({"deviations": {"pitch": 1.0}}, "deviations must be of"),
         ({"measures": {"level": 3}}, "measures must be functions of a vibration by name"),

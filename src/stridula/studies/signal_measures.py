@@ -124,14 +124,21 @@ class OfRecord:
         A variable of the record, or a function of it.
     measure : callable
         A function of the vibration.
+    units : str
+        Units of the recording, empty if they are unknown.
     """
 
     signal: Signal
     measure: OfSignal
+    units: str
 
     def __call__(self, record: xr.Dataset) -> float:
         """Return the measure."""
-        return float(self.measure(without_beginning(vibration_of(record, self.signal))))
+        vibration = vibration_of(record, self.signal)
+        units = str(vibration.attrs.get("units", ""))
+        if units and self.units and units != self.units:
+            raise ArgumentError("signal", f"be in {self.units}, as the recording", got=units)
+        return float(self.measure(without_beginning(vibration)))
 
 
 def vibration_of(record: xr.Dataset, signal: Signal) -> xr.DataArray:
@@ -165,15 +172,18 @@ class Measured:
         Functions of a vibration by name.
     values, deviations : ndarray, shape (measures,)
         Their values for the recording, and their standard deviations.
+    units : str
+        Units of the recording, empty if they are unknown.
     """
 
     measures: dict[str, OfSignal]
     values: Array
     deviations: Array
+    units: str
 
     def of_record(self, signal: Signal) -> dict[str, OfRecord]:
         """Return the measures as functions of a record."""
-        return {name: OfRecord(signal, one) for name, one in self.measures.items()}
+        return {name: OfRecord(signal, one, self.units) for name, one in self.measures.items()}
 
     def targets(self, near: float) -> dict[str, Target]:
         """Return targets that are met within some standard deviations."""
@@ -214,7 +224,8 @@ def measured_of(
     if not (sizes > 0.0).all():
         zero = listed(name for name, one in zip(taken, sizes, strict=True) if not one > 0.0)
         raise ArgumentError("deviations", f"be given for {zero}, which is the same in all parts of the recording")
-    return Measured(taken, found, sizes)
+    units = str(recording.attrs.get("units", ""))
+    return Measured(taken, found, sizes, "" if units == "unknown" else units)
 
 
 def _own(measures: Any) -> dict[str, OfSignal]:
