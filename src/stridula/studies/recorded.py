@@ -28,6 +28,9 @@ INTERVAL, WIDE = 1.96, 0.5
 OF_RANGE = 1.0 / 12.0
 # Ratio of the changes on both sides of a parameter from which the larger one is another vibration.
 JUMP = 5.0
+# Runs on either side of a parameter that tell whether its measures scatter, the variance of the third difference of
+# numbers that do over theirs, and the scatter in standard deviations from which a vibration is chaotic.
+REACH, OF_THIRDS, SCATTERS = 4, 20.0, 0.3
 # Correlation from which two parameters are determined together only.
 TOGETHER = 0.95
 # Most steps of least squares, error of a run that cannot be measured, and errors at which the search of the start ends.
@@ -70,7 +73,8 @@ def calibrate_to(
     (``scipy.optimize.least_squares``) the parameters with the smallest sum of squared errors in standard deviations.
     Derivatives are differences of runs side by side. The intervals hold where the measures are nearly linear in the
     parameters; they are widened by the root of the mean squared error where the model does not reach the recording, and
-    never exceed the range, of which all values are equally likely without a recording.
+    by the scatter of the measures of chaotic vibration, which no two runs have in common. They never exceed the range,
+    of which all values are equally likely without a recording.
 
     Parameters
     ----------
@@ -105,6 +109,8 @@ def calibrate_to(
         Over ``parameter`` the ``value`` and the ends ``low`` and ``high`` of its interval of 95 %, in the unit of its
         range from ``lowest`` to ``highest``, and whether it is ``determined``; the ``correlation`` with each ``other``.
         Over ``measure`` what is ``measured``, with its ``deviation``, and ``computed``, and the ``error``. Scalar
+        ``scatter``, the standard deviation of errors between nearly equal runs: above 0.3 a warning says that the
+        vibration is chaotic, and errors are the means of many runs; and
         ``misfit``, the root of the squared errors per degree of freedom [1]: about 1 where the model fits; a warning
         says so if it is 5 or more. The attribute ``undetermined`` says what the recording does not determine, and is
         empty if it determines all.
@@ -137,6 +143,9 @@ def calibrate_to(
         fit.errors, np.clip(shares, 1e-6, 1.0 - 1e-6), fit.slopes, bounds=(0.0, 1.0), max_nfev=STEPS
     )
     found = fit.dataset(best.x)
+    if found["scatter"] > SCATTERS:
+        words = f"its measures scatter by {float(found['scatter']):.2g} standard deviations from run to run"
+        warn_of([f"the vibration is chaotic: {words}, and the intervals are rough; longer runs scatter less"])
     if found["misfit"] > DOUBTFUL:
         errors = f"{float(found['misfit']):.3g} standard deviations"
         warn_of([f"the model does not reach the recording: its measures differ by {errors} in the mean, see 'error'"])
@@ -145,6 +154,33 @@ def calibrate_to(
 
 def _with_unit(number: float, one: Range) -> float | str:
     return f"{number!r} {one.unit}" if one.unit else number
+
+
+@dataclass(frozen=True)
+class _Lines:
+    """Straight lines through the errors of many runs about a set of parameters.
+
+    Attributes
+    ----------
+    scatter : float
+        Scatter of the errors of nearly equal runs, from their third differences, which smooth changes hardly have.
+    errors : ndarray, shape (measures,)
+        Mean errors at the set.
+    slopes : ndarray, shape (measures, parameters)
+        Slopes of the lines.
+    information : ndarray, shape (parameters, parameters)
+        What the slopes tell of the parameters, less what the scatter alone would give them.
+    """
+
+    scatter: float
+    errors: Array
+    slopes: Array
+    information: Array
+
+    def covariance(self, misfit: float) -> Array:
+        """Return the covariance of the parameters."""
+        known = self.information / max(1.0, misfit) ** 2
+        return np.asarray(np.linalg.inv(known + np.eye(len(known)) / OF_RANGE))
 
 
 @dataclass(frozen=True)
@@ -199,12 +235,34 @@ class _Fit:
             sizes = np.clip(OF_DEVIATION * np.sqrt(np.diag(covariance)), LEAST, MOST)
         return np.asarray(covariance)
 
+    def lines(self, shares: Array) -> _Lines:
+        """Return straight lines through the errors of many runs about a set."""
+        steps = np.arange(-REACH, REACH + 1)
+        middle = np.clip(shares, REACH * MOST, 1.0 - REACH * MOST)
+        sets = np.tile(shares, (shares.size, steps.size, 1))
+        for k in range(shares.size):
+            sets[k, :, k] = middle[k] + steps * MOST
+        found = self.errors_of(sets.reshape(-1, shares.size)).reshape(shares.size, steps.size, -1)
+        thirds = np.mean(np.diff(found, 3, axis=1) ** 2, axis=2) / OF_THIRDS
+        scatter = float(np.sqrt(np.nanmedian(thirds))) if np.isfinite(thirds).any() else 0.0
+        squares = float(steps @ steps) * MOST**2
+        slopes = np.nan_to_num(np.tensordot(steps * MOST, found, (0, 1))) / squares
+        # Those of a parameter near an end of its range are moved back along its line.
+        back = np.einsum("pm,p->pm", slopes, shares - middle)
+        mean = np.nan_to_num((found.mean(axis=1) + back).mean(axis=0), nan=FAILED)
+        sizes, ways = np.linalg.eigh(slopes @ slopes.T)
+        known = np.maximum(sizes - scatter**2 * slopes.shape[1] / squares, 0.0)
+        return _Lines(scatter, mean, slopes.T, (ways * known) @ ways.T / (1.0 + scatter**2))
+
     def dataset(self, shares: Array) -> xr.Dataset:
         """Return the results at the best parameters."""
-        errors = self.errors(shares)
+        lines = self.lines(shares)
+        is_chaotic = lines.scatter > SCATTERS
+        # A single chaotic run may be near the recording by chance.
+        errors = lines.errors if is_chaotic else self.errors(shares)
         freedom = max(errors.size - shares.size, 1)
         misfit = float(np.sqrt(errors @ errors / freedom))
-        covariance = self.covariance(shares, misfit)
+        covariance = lines.covariance(misfit) if is_chaotic else self.covariance(shares, misfit)
         sizes = np.sqrt(np.diag(covariance))
         correlation = covariance / np.outer(sizes, sizes)
         ends = np.clip(shares + np.outer([-INTERVAL, 0.0, INTERVAL], sizes), 0.0, 1.0)
@@ -232,6 +290,8 @@ class _Fit:
         for name, meaning in WORDS.items():
             found[name].attrs["long_name"] = meaning
         found = found.assign_coords(unit=("parameter", units))
+        words = "standard deviation of the errors of nearly equal runs"
+        found["scatter"] = ((), lines.scatter, {"units": "1", "long_name": words})
         found["misfit"] = ((), misfit, {"units": "1", "long_name": "root mean square of the errors"})
         return found
 

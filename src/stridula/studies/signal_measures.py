@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -24,18 +25,24 @@ THIRD, BELOW = 2.0 ** (1.0 / 3.0), 20.0
 # Harmonics that are compared, the share of the power that makes a tone with them [1], half of the width of their bands
 # over the frequency of the first, the power of those that count over that of the noise about them, and over the first.
 HARMONICS, TONAL, HALF, CLEAR, FAINT = 6, 0.8, 0.25, 4.0, 1e-6
+# Fewest cycles of a tone in a part of a recording.
+CYCLES = 4.0
+# Fewest frequencies below a third of an octave in which noise is measured.
+FEWEST = 40
 # Least standard deviations, as no chain of sensors is known better: of a frequency [1], of a level [dB].
 LEAST_FREQUENCY, LEAST_LEVEL = 1e-3, 0.1
 
 
 def frequency(signal: xr.DataArray) -> float:
-    """Return the frequency at which a signal has most energy [Hz]."""
-    return dominant_frequency(signal)
+    """Return the frequency at which a signal has most energy, above that of some cycles in its length [Hz]."""
+    values, interval = samples(signal)
+    return dominant_frequency(signal, lowest=CYCLES / (values.size * interval))
 
 
 def level(signal: xr.DataArray) -> float:
-    """Return the level of a signal without its mean, under a Hann window [dB re 1 of its unit]."""
-    return _decibels(float(_powers(signal)[0].sum()))
+    """Return the level of a signal without its mean and its noise, under a Hann window [dB re 1 of its unit]."""
+    power, found = _powers(signal)
+    return _decibels(float((power - _noise(power, found)).sum()))
 
 
 @dataclass(frozen=True)
@@ -53,10 +60,9 @@ class BandLevel:
     centre: float
 
     def __call__(self, signal: xr.DataArray) -> float:
-        """Return the level [dB re 1 of the unit of the signal]."""
+        """Return the level without that of the noise [dB re 1 of the unit of the signal]."""
         power, found = _powers(signal)
-        octaves = np.log2(found[1:] / self.centre)
-        return _decibels(float(power[1:] @ np.exp(-18.0 * octaves**2)))
+        return _decibels(float((power - _noise(power, found))[1:] @ _weights(found, self.centre)))
 
 
 @dataclass(frozen=True)
@@ -74,16 +80,15 @@ class HarmonicLevel:
     def __call__(self, signal: xr.DataArray) -> float:
         """Return the level without that of noise about it [dB re 1 of the unit of the signal]."""
         power, found = _powers(signal)
-        first = dominant_frequency(signal)
+        first = frequency(signal)
         within = np.abs(found - self.number * first) < HALF * first
-        # The power of noise at a frequency is distributed exponentially, with this mean for its median.
-        return _decibels(float(power[within].sum() - np.median(power) / np.log(2.0) * within.sum()))
+        return _decibels(float(power[within].sum() - _mean_of_noise(power) * within.sum()))
 
 
 def shape_of(signal: xr.DataArray) -> dict[str, OfSignal]:
     """Return the levels of the harmonics of a tone above the noise, or that of any other signal and its bands."""
     power, found = _powers(signal)
-    first, noise = dominant_frequency(signal), float(np.median(power))
+    first, noise = frequency(signal), float(np.median(power))
     within = [np.abs(found - k * first) < HALF * first for k in range(1, HARMONICS + 1)]
     if not sum(float(power[one].sum()) for one in within) > TONAL * float(power.sum()):
         return {"level": level, **bands_of(signal)}
@@ -100,7 +105,26 @@ def bands_of(signal: xr.DataArray) -> dict[str, OfSignal]:
     reach = range(int(np.ceil(np.log2(low / most) * 3.0)), int(np.log2(high / most) * 3.0) + 1)
     bands = [BandLevel(float(f"{most * THIRD**k:.3g}")) for k in reach]
     levels = [band(signal) for band in bands]
-    return {f"band_{one.centre:g}": one for one, size in zip(bands, levels, strict=True) if size >= max(levels) - BELOW}
+    noise = [CLEAR * _noise(power, found) * float(_weights(found, band.centre).sum()) for band in bands]
+    least = [max(max(levels) - BELOW, _decibels(one)) for one in noise]
+    each = zip(bands, levels, least, strict=True)
+    return {f"band_{one.centre:g}": one for one, size, low in each if size >= low}
+
+
+def _weights(found: Array, centre: float) -> Array:
+    """Return the weights of a band at frequencies above 0."""
+    return np.asarray(np.exp(-18.0 * np.log2(found[1:] / centre) ** 2))
+
+
+def _noise(power: Array, found: Array) -> float:
+    """Return the mean power of white noise at a frequency: that of the quietest third of an octave."""
+    edges = np.searchsorted(found, found[-1] * THIRD ** -np.arange(int(3.0 * np.log2(found[-1] / found[FEWEST])) + 1.0))
+    return min((_mean_of_noise(power[low:high]) for high, low in pairwise(edges)), default=0.0)
+
+
+def _mean_of_noise(power: Array) -> float:
+    """Return the mean power of noise, which is distributed exponentially, from its median: lines do not count."""
+    return float(np.median(power) / np.log(2.0))
 
 
 def _decibels(power: float) -> float:
