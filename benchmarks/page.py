@@ -23,21 +23,19 @@ import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 import machine
 from ratios import SHORT, arguments, sized, write_between
 
-if TYPE_CHECKING:
-    from playwright.sync_api import Page
-
 CHROMIUM = "/usr/bin/chromium"
 ARGUMENTS = ("--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update")
 CASES = ("weak-pressure", "squeal", "strong-pressure", "judder")
 BEGIN, END = "<!-- page: begin -->", "<!-- page: end -->"
 TICKS = os.sysconf("SC_CLK_TCK")
+# Time in which the code is compiled at most [ms].
+COMPILED = 300_000
 # Time in which a page that has begun settles [s].
 SETTLING = sized(5.0, 1.0)
 
@@ -96,15 +94,6 @@ def busy(wanted: bool) -> Iterator[None]:
         process.wait()
 
 
-def until(page: Page, condition: str, seconds: float = 300.0) -> None:
-    """Wait until a condition of the page holds; its policy refuses playwright's own polling."""
-    end = time.monotonic() + seconds
-    while not page.evaluate(condition):
-        if time.monotonic() > end:
-            raise SystemExit(f"within {seconds:.0f} s the page must reach: {condition}")
-        time.sleep(0.1)
-
-
 def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
     """Use the page for some minutes, changing the friction every 1.5 s and at times the case; return measurements."""
     from playwright.sync_api import sync_playwright
@@ -120,7 +109,7 @@ def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
             page.click("#begin")
             if not with_map:
                 page.click("#map-on")
-            until(page, "stridula.stats.samples > 0")
+            page.wait_for_function("() => stridula.stats.samples > 0", timeout=COMPILED)
             time.sleep(SETTLING)
             # Latencies count once the page has settled, drop-outs from the first sample.
             page.evaluate("stridula.stats.latencies.length = 0")
@@ -139,7 +128,7 @@ def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
                     page.select_option("#case", CASES[number // 60 % len(CASES)])
                     time.sleep(1.5)
                     seen["case"] += page.evaluate(f"stridula.stats.latencies.splice({before})")
-            until(page, "stridula.stats.latencies.length > 0")
+            page.wait_for_function("() => stridula.stats.latencies.length > 0")
             seen["latency"] = page.evaluate("stridula.stats.latencies")
             seen["share"] = [(processor_time(server.pid) - ticks) / (time.monotonic() - began)]
             seen["output"] = [page.evaluate("1000 * stridula.late()")]

@@ -6,9 +6,11 @@ from math import sqrt
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import stridula as st
 from stridula import plot
+from stridula.plot.loci import _without_decays as without_decays
 from stridula.studies.loci import critical_values
 from stridula.verification.systems.mode_coupling import hoffmann, sinou, sinou_limit
 
@@ -175,6 +177,15 @@ def test_modes_that_decay_within_a_period_are_not_drawn_and_the_legend_says_so()
     loci = st.root_loci(hoffmann_at, "friction", np.linspace(0.0, 1.0, 5))
     above = plot.root_loci(loci).axes[0]
     assert [one.get_text() for one in above.get_legend().get_texts()] == ["decays", "grows"]
+    frequency = [[100.0, 50.0, 0.0, 5e7], [100.0, 50.0, 0.0, 5e7]]
+    growth = [[-1.0, -60.0, -5.0, -1.0], [1.0, -60.0, -5.0, 2.0]]
+    four = xr.Dataset(
+        {name: (("mu", "mode"), one) for name, one in (("frequency", frequency), ("growth_rate", growth))}
+    ).assign(unstable=(("mu", "mode"), np.array(growth) > 0.0))
+    drawn, hidden = without_decays(four)
+    assert hidden
+    for name in ("frequency", "growth_rate"):
+        np.testing.assert_array_equal(np.isfinite(drawn[name].values), [[True, False, False, True]] * 2)
     swift = loci.assign(frequency=loci["frequency"].copy(), growth_rate=loci["growth_rate"].copy())
     swift["frequency"][:, 1], swift["growth_rate"][:, 1] = 1e7, -1e8
     swift["unstable"][:, 1] = False

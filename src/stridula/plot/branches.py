@@ -13,6 +13,7 @@ from ..arrays import Array
 from ..checks import ArgumentError, instance, listed
 from .colours import LINE, LINES
 from .loci import with_unit
+from .results import check_result
 
 STABLE, UNSTABLE, RUNS = LINE, LINES[1], LINES[2]
 # Marks of the events on a branch.
@@ -86,9 +87,7 @@ def multipliers(cycle: xr.Dataset) -> Figure:
     ValueError
         If `cycle` is not a result of `limit_cycle`.
     """
-    instance("cycle", cycle, xr.Dataset)
-    if "multiplier" not in cycle or "trivial" not in cycle:
-        raise ArgumentError("cycle", "be the result of limit_cycle", cycle, got=listed(map(str, cycle.data_vars)))
+    check_result("cycle", cycle, "limit_cycle", ("multiplier", "trivial"))
     real, imaginary = cycle["multiplier"].values.T
     trivial = cycle["trivial"].values
     outside = ~trivial & (np.hypot(real, imaginary) > 1.0 + 1e-6)

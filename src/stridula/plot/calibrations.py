@@ -7,8 +7,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..checks import ArgumentError, instance, listed
 from .colours import LINE, LINES
+from .results import check_result
 
 NEEDED = ("value", "low", "high", "lowest", "highest", "measured", "error", "misfit")
 # Height of a row and of what surrounds them [inches].
@@ -35,9 +35,7 @@ def calibration(found: xr.Dataset) -> Figure:
     ValueError
         If `found` is anything else.
     """
-    instance("found", found, xr.Dataset)
-    if any(name not in found for name in NEEDED):
-        raise ArgumentError("found", "be the result of calibrate_to", found, got=listed(map(str, found.data_vars)))
+    check_result("found", found, "calibrate_to", NEEDED)
     rows = max(found.sizes["parameter"], found.sizes["measure"])
     figure = Figure(figsize=(10.0, REST + ROW * rows), layout="constrained", dpi=120)
     left, right = figure.subplots(1, 2)

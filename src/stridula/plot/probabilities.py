@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..checks import ArgumentError, instance, listed
 from .colours import LINE, LINES
+from .results import check_result
 
 NEEDED = ("probability", "probability_interval", "band_growth_rate", "frequency")
 # Height of a row and of the rest of the figure [inches].
@@ -32,9 +32,7 @@ def mode_probability(found: xr.Dataset) -> Figure:
     ValueError
         If `found` is anything else.
     """
-    instance("found", found, xr.Dataset)
-    if any(name not in found for name in NEEDED):
-        raise ArgumentError("found", "be the result of mode_probability", found, got=listed(map(str, found.data_vars)))
+    check_result("found", found, "mode_probability", NEEDED)
     places = np.arange(found.sizes["band"])
     figure = Figure(figsize=(9.0, REST + ROW * places.size), layout="constrained", dpi=120)
     left, right = figure.subplots(1, 2, sharey=True)

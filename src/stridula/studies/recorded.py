@@ -179,8 +179,7 @@ class _Lines:
 
     def covariance(self, misfit: float) -> Array:
         """Return the covariance of the parameters."""
-        known = self.information / max(1.0, misfit) ** 2
-        return np.asarray(np.linalg.inv(known + np.eye(len(known)) / OF_RANGE))
+        return _inverse(self.information / max(1.0, misfit) ** 2)
 
 
 @dataclass(frozen=True)
@@ -231,9 +230,9 @@ class _Fit:
         sizes = np.full(shares.size, MOST)
         for _ in range(2):
             slopes = self.slopes(shares, sizes) / max(1.0, misfit)
-            covariance = np.linalg.inv(slopes.T @ slopes + np.eye(shares.size) / OF_RANGE)
+            covariance = _inverse(slopes.T @ slopes)
             sizes = np.clip(OF_DEVIATION * np.sqrt(np.diag(covariance)), LEAST, MOST)
-        return np.asarray(covariance)
+        return covariance
 
     def lines(self, shares: Array) -> _Lines:
         """Return straight lines through the errors of many runs about a set."""
@@ -294,6 +293,11 @@ class _Fit:
         found["scatter"] = ((), lines.scatter, {"units": "1", "long_name": words})
         found["misfit"] = ((), misfit, {"units": "1", "long_name": "root mean square of the errors"})
         return found
+
+
+def _inverse(information: Array) -> Array:
+    """Return the covariance of parameters from what is known of them, beside their ranges."""
+    return np.asarray(np.linalg.inv(information + np.eye(len(information)) / OF_RANGE))
 
 
 def _undetermined(names: list[str], determined: Array, correlation: Array) -> str:

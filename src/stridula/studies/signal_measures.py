@@ -237,10 +237,8 @@ def measured_of(
     spread = np.array([[one(piece) for piece in pieces] for one in taken.values()])
     known = np.isfinite(spread).all(axis=1)
     own = np.where(known, np.std(np.where(known[:, None], spread, 0.0), axis=1, ddof=1) / np.sqrt(parts), 0.0)
-    least = [LEAST_FREQUENCY * abs(found[k]) if name == "frequency" else LEAST_LEVEL for k, name in enumerate(taken)]
-    if measures is not None:
-        least = [LEAST_FREQUENCY * abs(value) for value in found]
-    sizes = np.maximum(own, least)
+    is_level = np.array([measures is None and name != "frequency" for name in taken])
+    sizes = np.maximum(own, np.where(is_level, LEAST_LEVEL, LEAST_FREQUENCY * np.abs(found)))
     for name, size_given in by_key("deviations", deviations).items():
         if name not in taken:
             raise ArgumentError("deviations", f"be of {listed(taken)}", name)

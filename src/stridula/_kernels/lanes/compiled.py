@@ -16,8 +16,13 @@ F = TypeVar("F", bound=Callable[..., Any])
 _njit: Any = numba.njit
 
 # Said of each function, as numba passes it on to all that a function calls: by chance, to those that it compiles first.
-STRICT: dict[str, Any] = {"cache": True, "fastmath": False, "error_model": "numpy", "forceinline": False}
-STRICT["no_cfunc_wrapper"] = True
+STRICT: dict[str, Any] = {
+    "cache": True,
+    "fastmath": False,
+    "error_model": "numpy",
+    "forceinline": False,
+    "no_cfunc_wrapper": True,
+}
 # A wrapper for callers in Python takes a sixth of the compilation.
 WITHOUT_WRAPPER: dict[str, Any] = {**STRICT, "_nrt": False, "no_cpython_wrapper": True}
 INLINED: dict[str, Any] = {**WITHOUT_WRAPPER, "forceinline": True}
