@@ -27,6 +27,7 @@ import time
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from importlib.util import find_spec
 from itertools import islice
 from math import radians
 from pathlib import Path
@@ -40,6 +41,7 @@ from ratios import REPEATS, SHORT, Ratio, arguments, must_agree, show, sized
 from stridula._kernels.lanes.vectors import LANES
 from stridula._kernels.layout.parts import Imposed as ImposedOnRuns
 from stridula._kernels.layout.parts import Parts, Records
+from stridula.extras import how_to_install
 from stridula.integration.cuda_march import CudaMarch, require_cuda
 from stridula.integration.marches import Excitation, March, imposed_on
 from stridula.integration.start import state_at_start
@@ -249,7 +251,8 @@ class DryMarch(CudaMarch):
 
     def __init__(self, blocks: list[Blocks], states: list[State], step: float, ratio: int) -> None:
         March.__init__(self, blocks, states, step, ratio)
-        self.there = [self.modes, self.paths, self.contacts, self.turning, self.carried, self.probes]
+        parts = self.modes, self.paths, self.contacts, self.turning, self.springs, self.heating, self.carried
+        self.there = [*parts, self.probes]
 
     def _moved(self, part: Any) -> Any:
         return part
@@ -257,10 +260,8 @@ class DryMarch(CudaMarch):
     def _march(self, imposed: ImposedOnRuns, records: Records) -> None:
         from numba import cuda, typeof, types
 
-        modes, paths, contacts, turning, carried, probes = self.there
-        parts = Parts(
-            self.layout.sizes, self.timing, modes, paths, contacts, turning, carried, imposed, probes, records
-        )
+        *fixed, carried, probes = self.there
+        parts = Parts(self.layout.sizes, self.timing, *fixed, carried, imposed, probes, records)
         kernel = marches_on_card()[self.kind].py_func
         self.ptx, _ = cuda.compile_ptx(kernel, types.void(types.int64, typeof(parts)), cc=DRY)
 
@@ -282,6 +283,9 @@ def prepared(system: st.System, step: float) -> Case:
 
 def dry_run() -> None:
     """Compile the march for a card that is not present and print the resources of a thread."""
+    if find_spec("numba_cuda") is None:
+        print(f"nothing compiled: numba-cuda is not installed: {how_to_install('cuda')}")
+        return
     from numba.cuda import dispatcher
 
     # Functions called by a kernel are compiled for the card at hand; here there is none.

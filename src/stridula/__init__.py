@@ -72,6 +72,7 @@ _HOME = {
         "Dashpot",
         "RigidJoint",
         "Spring",
+        "TabulatedDashpot",
         "TabulatedSpring",
         "ViscoelasticSpring",
     ),

@@ -80,6 +80,7 @@ from .connections import CubicSpring as CubicSpring
 from .connections import Dashpot as Dashpot
 from .connections import RigidJoint as RigidJoint
 from .connections import Spring as Spring
+from .connections import TabulatedDashpot as TabulatedDashpot
 from .connections import TabulatedSpring as TabulatedSpring
 from .connections import ViscoelasticSpring as ViscoelasticSpring
 from .contact import Coulomb as Coulomb

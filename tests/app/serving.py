@@ -70,7 +70,7 @@ class Server:
     @property
     def complaints(self) -> str:
         """The same without the notice of compilation: empty if all is well."""
-        return self.said.replace(f"{COMPILING}\n", "")
+        return re.sub(rf"{COMPILING}.*\n", "", self.said)
 
     def get(self, path: str, **headers: str) -> tuple[HTTPResponse, bytes]:
         """Ask for a file of the page."""

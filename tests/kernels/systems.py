@@ -75,6 +75,18 @@ def bent_chain() -> st.System:
     return st.System(contacts, [st.Gravity(), st.Force(two.centre, y=-3.0, x=0.2)], joints)
 
 
+def braked_chain() -> st.System:
+    """The same with dashpots that yield, that are stiffer in one direction, and that are preloaded."""
+    chained = bent_chain()
+    one, two = (contact.tip.body for contact in chained.contacts)
+    brakes = [
+        st.TabulatedDashpot(one.centre, two.centre, velocity=[-1.0, -2e-3, 2e-3, 1.0], force=[-2.0, -0.1, 0.1, 1.5]),
+        st.TabulatedDashpot(two.centre, direction="y", velocity=[-1.0, 0.0, 1.0], force=[-4.0, 0.0, 40.0]),
+        st.TabulatedDashpot(one.centre, velocity=[0.01, 0.02], force=[0.05, 0.08]),
+    ]
+    return st.System(chained.contacts, chained.drives, [*chained.connections, *brakes])
+
+
 def stop_of_a_beam() -> st.System:
     """Slider on a beam that meets a stop, and hangs on a hardening spring."""
     bar, rod = track(cutoff=3e3), slider(cutoff=6e3)
@@ -292,6 +304,7 @@ SYSTEMS = {
     "mass on a belt, damped joint": (lambda: jointed(oscillator(WEAK), 2e4, 3.0), 2e-4),
     "chain on a belt": (chain, 2e-4),
     "chain of nonlinear springs": (bent_chain, 2e-4),
+    "chain of nonlinear dashpots": (braked_chain, 2e-4),
     "beam with a stop": (stop_of_a_beam, 5e-6),
     "pad on a shaken belt": (lambda: pad_on(SHAKEN, [st.Coulomb(0.4), WEAK, st.StaticKinetic(0.5, 0.3)]), 1e-4),
     "mass on a rough belt": (lambda: oscillator(st.StaticKinetic(0.6, 0.4), ROUGH), 2e-4),

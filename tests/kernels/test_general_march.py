@@ -97,6 +97,10 @@ def slightly(change, system):
         tables = [one for one in joints if hasattr(one, "displacement")]
         moved = {one: replace(one, displacement=np.multiply(one.displacement, 1.0 + 1e-4)) for one in tables}
         joints = [moved.get(one, one) for one in joints]
+    elif change == "valve":
+        tables = [one for one in joints if isinstance(one, st.TabulatedDashpot)]
+        moved = {one: replace(one, force=np.multiply(one.force, 1.0 + 1e-4)) for one in tables}
+        joints = [moved.get(one, one) for one in joints]
     elif change == "spring":
         joints[0] = replace(joints[0], stiffness=joints[0].stiffness * (1 + 1e-5))
     return st.System(contacts, system.drives, joints)
@@ -121,6 +125,7 @@ def slightly(change, system):
         ("cubic", "beam with a stop"),
         ("kink", "chain of nonlinear springs"),
         ("kink", "beam with a stop"),
+        ("valve", "chain of nonlinear dashpots"),
         ("direction of the line", "diagonal of a plate"),
     ],
 )

@@ -54,6 +54,7 @@ SLOW = [
     "lining",
     "friction-damper",
     "cubic-chain",
+    "valve-damper",
     "fading-friction",
     "heated-slab",
 ]

@@ -105,6 +105,26 @@ def test_tables_of_springs_are_checked(displacement, force, words):
 
 
 @pytest.mark.parametrize(
+    ("velocity", "force", "words"),
+    [
+        ([0.0], [0.0], r"^velocity must have two values or more, got 1"),
+        ([0.0, -1.0], [0.0, 1.0], r"^velocity\[1\] must be above 0.0, the one before it, got -1.0"),
+        ([0.0, 1.0], [0.0], r"^force must have as many values as velocity, 2, got 1"),
+        (
+            [0.0, 1.0, 2.0],
+            [0.0, -1.0, 3.0],
+            r"^force\[1\] must brake: at 1 m/s have the sign of the velocity, .* -1.0$",
+        ),
+        ([-1.0, 0.0, 1.0], [4.0, 3.0, 4.0], r"^force\[0\] must brake: at -1 m/s .*, beyond 3 N at rest, got 4.0"),
+        ([0.0, 1.0, 2.0], [0.0, 3.0, 2.0], r"^force must not fall over its last two velocities, .* got -1 N s/m there"),
+    ],
+)
+def test_tables_of_dashpots_are_checked(velocity, force, words):
+    with pytest.raises(ValueError, match=words):
+        st.TabulatedDashpot(ONE.centre, velocity=velocity, force=force)
+
+
+@pytest.mark.parametrize(
     ("words", "said"),
     [
         ({"stiffness": (1.0, 2.0)}, r"^stiffness must be three numbers, for x, y and z, got 2"),
@@ -146,7 +166,8 @@ def test_lists_of_systems():
     for value in (None, spring, "spring", 3):
         with pytest.raises(ValueError, match=r"^connections must be a list of connections, got "):
             st.System(contact, (), value)
-    kinds = "Spring or Dashpot or CubicSpring or TabulatedSpring or ViscoelasticSpring or Bushing or RigidJoint"
+    springs = "Spring or Dashpot or CubicSpring or TabulatedSpring or TabulatedDashpot or ViscoelasticSpring"
+    kinds = f"{springs} or Bushing or RigidJoint"
     with pytest.raises(ValueError, match=rf"^connections\[0\] must be a {kinds}, got "):
         st.System(contact, (), [contact])
     with pytest.raises(ValueError, match=r"^contact must hold at least one PointContact, got none"):

@@ -11,6 +11,7 @@ from stridula.scenarios.read import tables_of_text
 LINING = "speed,mu\n0,0.5\n10,0.42\n50,0.36\n300,0.33\n"
 RAIL = "x;z\n0;0\n5;4\n10;0\n15;-4\n20;0\n"
 STOP = "# mm N\n1.1 50\n-1 0\n1 0\n-1.1 -50\n"
+DAMPER = "velocity;force\n-100;-3\n0;0\n200;2\n"
 SCENARIO = """
 [bodies.block]
 kind = "point mass"
@@ -27,6 +28,11 @@ kind = "tabulated spring"
 first = { body = "block" }
 file = "stop.txt"
 displacement_unit = 1e-3
+[[connections]]
+kind = "tabulated dashpot"
+first = { body = "block" }
+file = "damper.csv"
+velocity_unit = 1e-3
 [[drives]]
 kind = "force"
 body = "block"
@@ -39,7 +45,7 @@ duration = 0.01
 @pytest.fixture
 def scenario(tmp_path):
     """A function that writes a changed scenario beside its tables and loads it."""
-    for name, text in (("lining.csv", LINING), ("rail.csv", RAIL), ("stop.txt", STOP)):
+    for name, text in (("lining.csv", LINING), ("rail.csv", RAIL), ("stop.txt", STOP), ("damper.csv", DAMPER)):
         (tmp_path / name).write_text(text)
 
     def load(before="", after=""):
@@ -52,6 +58,8 @@ def scenario(tmp_path):
 
 def test_tables_are_those_of_the_files(scenario):
     system = scenario().system
+    damper = system.connections[1]
+    assert (damper.velocity, damper.force) == ((-0.1, 0.0, 0.2), (-3.0, 0.0, 2.0))
     law, profile, stop = system.contact.friction, system.contact.track.profile, system.connections[0]
     assert law == st.TabulatedFriction([0.0, 0.01, 0.05, 0.3], [0.5, 0.42, 0.36, 0.33])
     np.testing.assert_allclose(profile.place, [0.0, 5e-3, 0.01, 0.015, 0.02])

@@ -35,7 +35,7 @@ EVERYWHERE = ("0.0.0.0", "::")
 ELSEWHERE = ("192.0.2.1", 9)
 # Longest time for which a thread keeps the interpreter while another waits [s].
 HANDED_OVER = 0.001
-COMPILING = "stridula: compiling, once for all later starts, which takes a minute or two; the page waits"
+COMPILING = "stridula: compiling, once for all later starts, while the page waits: "
 
 
 def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
@@ -117,10 +117,10 @@ def _get_ready(ready: threading.Event) -> None:
     """Play a moment of every kind of system, with a notice if that compiles its code, then set an event."""
     told = threading.Event()
 
-    def tell() -> None:
+    def tell(time: str) -> None:
         if not told.is_set():
             told.set()
-            print(COMPILING, file=sys.stderr, flush=True)
+            print(COMPILING + time, file=sys.stderr, flush=True)
 
     try:
         with tell_of_compiling(tell):

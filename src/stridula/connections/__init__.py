@@ -1,10 +1,11 @@
-"""Connections between bodies: springs, linear, nonlinear and viscoelastic, dashpots, bushings and rigid joints."""
+"""Connections between bodies: springs and dashpots, also nonlinear, viscoelastic springs, bushings, rigid joints."""
 
 from __future__ import annotations
 
 from ..arrays import Array
 from ..bodies import BodyPoint
 from ..histories import History
+from .dashpots import TabulatedDashpot
 from .elements import elements_of, held_motions
 from .ends import ends, unit
 from .linear import Dashpot, Spring
@@ -21,6 +22,7 @@ __all__ = [
     "NonlinearSpring",
     "RigidJoint",
     "Spring",
+    "TabulatedDashpot",
     "TabulatedSpring",
     "ViscoelasticSpring",
     "elements_of",
@@ -30,8 +32,8 @@ __all__ = [
     "unit",
 ]
 
-Connection = Spring | Dashpot | NonlinearSpring | ViscoelasticSpring | Bushing | RigidJoint
-CONNECTIONS = (Spring, Dashpot, CubicSpring, TabulatedSpring, ViscoelasticSpring, Bushing, RigidJoint)
+Connection = Spring | Dashpot | NonlinearSpring | TabulatedDashpot | ViscoelasticSpring | Bushing | RigidJoint
+CONNECTIONS = (Spring, Dashpot, CubicSpring, TabulatedSpring, TabulatedDashpot, ViscoelasticSpring, Bushing, RigidJoint)
 
 
 def pushes(connection: Connection) -> list[tuple[History, BodyPoint, Array]]:

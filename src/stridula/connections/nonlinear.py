@@ -1,4 +1,4 @@
-"""Springs whose force is not proportional to their stretch."""
+"""Springs and dashpots whose force is not proportional to their stretch, or to its rate."""
 
 from __future__ import annotations
 
@@ -16,27 +16,30 @@ from ..checks import ArgumentError, rising
 from ..declared import Axis, Each, Number, check_declared
 from ..histories import Constant, History
 from .ends import along, check_ends
-from .table_files import spring_of_file
+from .table_files import table_of_file
 
 
 @dataclass(frozen=True)
 class Bend:
-    """The pull of a spring over its stretch s beyond that of its linear part.
+    """The pull of a spring over its stretch s, or of a dashpot over the rate of its stretch, beyond a linear part.
 
-    It is ``constant + linear s + cubic s³ + sum of right max(s - place, 0) + left min(s - place, 0)``.
+    It is ``constant + linear s + cubic s³ + sum of right max(s - place, 0) + left min(s - place, 0)``. For a dashpot,
+    metres are metres per second.
 
     Attributes
     ----------
     constant : float
         Pull without a stretch [N].
     linear : float
-        Stiffness without a stretch [N/m], where it is below zero: a linear spring has none.
+        Stiffness without a stretch [N/m], where the linear part does not have it.
     cubic : float
         Pull for the cube of a stretch [N/m³].
     place : ndarray, shape (kinks,)
         Stretches at which the stiffness changes, rising [m].
     right, left : ndarray, shape (kinks,)
         Change of the stiffness above each, and below it [N/m].
+    of_rate : bool
+        Whether it is that of a dashpot.
     """
 
     constant: float
@@ -45,6 +48,7 @@ class Bend:
     place: Array
     right: Array
     left: Array
+    of_rate: bool = False
 
     def pull(self, stretch: float) -> float:
         """Return the pull at a stretch [N]."""
@@ -57,6 +61,11 @@ class Bend:
         above, below = self._from_kinks(stretch)
         kinked = self.right @ (above > 0.0) + self.left @ (below < 0.0)
         return float(self.linear + 3.0 * self.cubic * stretch**2 + kinked)
+
+    def stiffness_about_rest(self) -> float:
+        """Return the change of the pull for small stretches to both sides [N/m]: the mean of both at a kink."""
+        kinked = self.place == 0.0
+        return self.stiffness(0.0) + 0.5 * float((self.right + self.left) @ kinked)
 
     def energy(self, stretch: float) -> float:
         """Return the energy that the pull stores [J]."""
@@ -170,6 +179,56 @@ class CubicSpring(NonlinearSpring):
 
 
 @dataclass(frozen=True)
+class Lines:
+    """A pull on straight lines between points, and beyond them on those through the last two.
+
+    Attributes
+    ----------
+    at : ndarray, shape (points,)
+        Stretches, or their rates, rising [m or m/s].
+    force : ndarray, shape (points,)
+        Pull at each [N].
+    """
+
+    at: Array
+    force: Array
+
+    @cached_property
+    def slopes(self) -> Array:
+        """Slope of each straight line."""
+        return np.asarray(np.diff(self.force) / np.diff(self.at))
+
+    @property
+    def slope_at_rest(self) -> float:
+        """Slope at the origin; at a kink, that above it."""
+        return float(self.slopes[self._line(0.0)])
+
+    def pull(self, stretch: float) -> float:
+        """Return the pull at a stretch [N]."""
+        line = self._line(stretch)
+        return float(self.force[line] + self.slopes[line] * (stretch - self.at[line]))
+
+    def bend(self, linear: float, of_rate: bool = False) -> Bend:
+        """Return the pull beyond that of a linear part with a given slope."""
+        place, change = self.at[1:-1], np.diff(self.slopes)
+        above = place > 0.0
+        right, left = np.where(above, change, 0.0), np.where(above, 0.0, -change)
+        return Bend(self.pull(0.0), self.slope_at_rest - linear, 0.0, place, right, left, of_rate)
+
+    def _line(self, stretch: float) -> int:
+        return int(np.searchsorted(self.at[1:-1], stretch, side="right"))
+
+
+def check_table(name: str, at: Sequence[float], force: Sequence[float]) -> None:
+    """Raise ArgumentError unless the table of a pull rises in its first list, called `name`, and is complete."""
+    if len(at) < 2:
+        raise ArgumentError(name, "have two values or more", got=str(len(at)))
+    rising(name, at)
+    if len(force) != len(at):
+        raise ArgumentError("force", f"have as many values as {name}, {len(at)}", got=str(len(force)))
+
+
+@dataclass(frozen=True)
 class TabulatedSpring(NonlinearSpring):
     """A massless spring given by a table, such as a bump stop, a play or a bilinear spring.
 
@@ -206,12 +265,7 @@ class TabulatedSpring(NonlinearSpring):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if len(self.displacement) < 2:
-            raise ArgumentError("displacement", "have two values or more", got=str(len(self.displacement)))
-        rising("displacement", self.displacement)
-        if len(self.force) != len(self.displacement):
-            words = f"have as many values as displacement, {len(self.displacement)}"
-            raise ArgumentError("force", words, got=str(len(self.force)))
+        check_table("displacement", self.displacement, self.force)
 
     @classmethod
     def read(
@@ -249,30 +303,25 @@ class TabulatedSpring(NonlinearSpring):
         if len(columns) != 2:
             raise ArgumentError("columns", "be two, of displacement and force", columns)
         units = {"displacement": displacement_unit, "force": force_unit}
-        return spring_of_file(partial(cls, first, second, direction=direction), path, columns, units)
+        return table_of_file(partial(cls, first, second, direction=direction), path, columns, units)
 
     @cached_property
-    def _slopes(self) -> Array:
-        """Stiffness on each straight line [N/m]."""
-        return np.asarray(np.diff(self.force) / np.diff(self.displacement))
+    def _lines(self) -> Lines:
+        return Lines(np.array(self.displacement), np.array(self.force))
 
     @property
     def stiffness_at_rest(self) -> float:
         """Stiffness at the start [N/m]; at a kink, that above it."""
-        return float(self._slopes[int(np.searchsorted(self.displacement[1:-1], 0.0, side="right"))])
+        return self._lines.slope_at_rest
 
     @cached_property
     def bend(self) -> Bend:
         """Its pull beyond that of its linear part."""
-        place, change = np.array(self.displacement[1:-1]), np.diff(self._slopes)
-        above = place > 0.0
-        linear = min(self.stiffness_at_rest, 0.0)
-        return Bend(self.pull(0.0), linear, 0.0, place, np.where(above, change, 0.0), np.where(above, 0.0, -change))
+        return self._lines.bend(self.rates[0])
 
     def pull(self, stretch: float) -> float:
         """Return the force that pulls the first end back at a stretch [m], in N."""
-        line = int(np.searchsorted(self.displacement[1:-1], stretch, side="right"))
-        return float(self.force[line] + self._slopes[line] * (stretch - self.displacement[line]))
+        return self._lines.pull(stretch)
 
     def __str__(self) -> str:
         least, most = f"{self.displacement[0]:.4g}", f"{self.displacement[-1]:.4g}"

@@ -1,4 +1,4 @@
-"""Springs whose tables are in text files."""
+"""Springs and dashpots whose tables are in text files."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from ..columns import read_rising
 Made = TypeVar("Made")
 
 
-def spring_of_file(
+def table_of_file(
     make: Callable[..., Made], path: str | Path, columns: Sequence[str | int], units: Mapping[str, float]
 ) -> Made:
-    """Return a spring made of the columns of a text file, such as a CSV.
+    """Return a spring or dashpot made of the columns of a text file, such as a CSV.
 
     Parameters
     ----------
     make : callable
-        Makes the spring from its lists by name.
+        Makes it from its lists by name.
     path : str or Path
         The file.
     columns : sequence of str or int

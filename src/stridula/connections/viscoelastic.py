@@ -19,7 +19,7 @@ from ..histories import Constant, History
 from .branches import Relaxation, relaxation_of
 from .elements import Element, Motion
 from .ends import along, check_ends, unit
-from .table_files import spring_of_file
+from .table_files import table_of_file
 
 # Relative error of the branches from which there is a warning.
 DOUBTFUL = 0.1
@@ -129,7 +129,7 @@ class ViscoelasticSpring:
         if len(columns) != 3:
             raise ArgumentError("columns", "be three, of frequency, stiffness and loss factor", columns)
         units = {"frequency": frequency_unit, "stiffness": stiffness_unit, "loss_factor": 1.0}
-        return spring_of_file(partial(cls, first, second, direction=direction), path, columns, units)
+        return table_of_file(partial(cls, first, second, direction=direction), path, columns, units)
 
     @property
     def relaxation(self) -> Relaxation:

@@ -255,7 +255,7 @@ def _at_end(start: xr.Dataset, flat: Assembly) -> _Motion:
     state = state_at_end(start, flat)
     imposed = start["state_motion"].values[1:].sum(axis=0)
     step, last = float(start.attrs["step"]), int(start.attrs["last_step"])
-    return _Motion(State(state.modal, 0.0 * state.remainder, state.carried, state.energies), step, last * step, imposed)
+    return _Motion(replace(state, remainder=0.0 * state.remainder), step, last * step, imposed)
 
 
 def _at_whole_period(flat: Assembly, settings: Settings, motion: _Motion, period: float) -> _Motion:
@@ -282,7 +282,7 @@ def _since(flat: Assembly, time: float) -> Assembly:
 
 def _march(flat: Assembly, settings: Settings, state: State, step: float) -> tuple[March, Impositions]:
     blocks = blocks_of(flat, settings.scheme, step)
-    begun = State(state.modal, state.remainder, state.carried, np.zeros_like(state.energies))
+    begun = replace(state, energies=np.zeros_like(state.energies))
     return March([blocks], [begun], step, 1, settings.solve), Impositions(flat, blocks, step)
 
 

@@ -11,7 +11,7 @@ from ..long_tasks import notified_of_tasks
 from .compiled_code import tell_of_compiling
 from .watchers import Progress, Watcher
 
-COMPILING = "compiling, only once: a minute or two"
+COMPILING = "compiling, only once: "
 
 
 @contextmanager
@@ -36,7 +36,7 @@ def bar(title: str, asked: bool = False) -> Iterator[Show]:
             elif shown.changes:
                 shown.say(f"{task}: {done} of {total} ...")
 
-        with notified_of_tasks(tell), tell_of_compiling(lambda: shown.say(COMPILING)):
+        with notified_of_tasks(tell), tell_of_compiling(lambda time: shown.say(COMPILING + time)):
             yield shown.show
 
 

@@ -8,6 +8,8 @@ import os
 import shutil
 import sys
 import tempfile
+import threading
+import time as clock
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -16,9 +18,12 @@ from pathlib import Path
 from typing import Any
 
 import numba
+import numpy as np
 from numba.core import event
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
+
+from ..cache import keep, key, recall
 
 # Files beside the compiled code: the digest of its sources, and the lock of the process that changes it.
 STAMP, LOCK = "stridula-kernels", "stridula-storing"
@@ -119,21 +124,46 @@ def _locked(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
-def tell_of_compiling(begins: Callable[[], None]) -> Iterator[None]:
-    """Call a function whenever a compilation begins, in any thread; loading code from disk does not count."""
-    with event.install_listener("numba:compile", _Beginnings(begins)):
+def tell_of_compiling(begins: Callable[[str], None]) -> Iterator[None]:
+    """Call a function whenever a compilation begins, in any thread, with its time on this machine last time, in words.
+
+    Loading code from disk does not count, nor does code that is compiled for other code.
+    """
+    with event.install_listener("numba:compile", _Compilations(begins)):
         yield
 
 
-class _Beginnings(event.Listener):
-    """Listener that calls a function when a compilation begins."""
+class _Compilations(event.Listener):
+    """Listener that calls a function when a compilation begins, and keeps the time that it takes."""
 
-    def __init__(self, begins: Callable[[], None]) -> None:
-        self.begins = begins
+    def __init__(self, begins: Callable[[str], None]) -> None:
+        self.begins, self.here = begins, threading.local()
 
     def on_start(self, event: event.Event) -> None:
-        """Call the function."""
-        self.begins()
+        """Call the function, unless this is a part of a compilation."""
+        under_way = getattr(self.here, "under_way", 0)
+        self.here.under_way = under_way + 1
+        if not under_way:
+            self.here.name, self.here.began = _name_of(event), clock.perf_counter()
+            self.begins(_time_in_words(self.here.name))
 
     def on_end(self, event: event.Event) -> None:
-        """Do nothing."""
+        """Keep the time of a compilation that is complete."""
+        self.here.under_way = max(getattr(self.here, "under_way", 0) - 1, 0)
+        if not self.here.under_way:
+            keep(self.here.name, {"seconds": np.array(clock.perf_counter() - self.here.began)})
+
+
+def _name_of(compilation: event.Event) -> str:
+    """Return the name of the time of a compilation in the cache: that of what is compiled, and for which arguments."""
+    of = compilation.data["dispatcher"].py_func
+    return key(part.encode() for part in ("compilation", of.__module__, of.__qualname__, str(compilation.data["args"])))
+
+
+def _time_in_words(name: str) -> str:
+    """Return the time of a compilation last time in words."""
+    known = recall(name)
+    if known is None:
+        return "a minute or two"
+    seconds = float(known["seconds"])
+    return f"{seconds:.0f} s last time" if seconds >= 1.0 else "a moment"

@@ -82,7 +82,8 @@ class CudaMarch(March):
     @property
     def states(self) -> list[State]:
         """State of each run."""
-        modes, *_, carried, _ = self.there
+        modes, _, _, _, springs, _, carried, _ = self.there
+        self.springs = self.springs._replace(now=springs.now.copy_to_host())
         self.modes = self.modes._replace(rows=modes.rows.copy_to_host())
         self.carried = type(carried)(*(array.copy_to_host() for array in carried))
         return super().states

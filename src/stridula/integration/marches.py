@@ -309,12 +309,14 @@ class March:
         """State of each run."""
         found, where = [], self.layout
         all_carried = self.carried.carried.reshape(-1, self.runs)
+        springs = self.springs.now.reshape(-1, at.SPRING_STATE, self.runs)
         energies = self.carried.energies.reshape(-1, self.runs)
         for run, scale in enumerate(self.scales[: self.given]):
             rows = self.modes.rows[where.block, :2, where.lane + run].T
             modal = rows * scale
             carried = all_carried[:, run].reshape(self.contact_count, at.CARRIED).copy()
-            found.append(State(modal, rows - modal / scale, carried, energies[:, run].copy()))
+            own = springs[:, at.EARLIER_INCREMENT, run].copy()
+            found.append(State(modal, rows - modal / scale, carried, own, energies[:, run].copy()))
         return found
 
     def put(self, states: Sequence[State], factors: Factors | None = None) -> None:
@@ -327,6 +329,8 @@ class March:
         energies = np.stack([state.energies for state in states], axis=1)
         for own, given in zip(self.carried, (carried, carried, energies), strict=True):
             own.reshape(given.shape)[:] = given
+        increments = np.stack([state.springs for state in states], axis=1)
+        self.springs.now.reshape(-1, at.SPRING_STATE, self.runs)[:, at.EARLIER_INCREMENT] = increments
         dense, rows = self.contacts.dense, self.layout.sizes.rows
         if factors is not None:
             most = factors.matrix.shape[1]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -178,7 +178,7 @@ class PeriodMap:
 
     def _prepared(self, state: State, step: float) -> _Prepared:
         """Return the march from a state; that of the last step is used again."""
-        state = State(state.modal, state.remainder, state.carried, np.zeros_like(state.energies))
+        state = replace(state, energies=np.zeros_like(state.energies))
         if step in self.kept:
             self.kept[step].march.put([state])
             return self.kept[step]

@@ -24,7 +24,7 @@ from ..system import System
 from .probe_records import memory_of
 from .timing import Timing
 
-STATE = ("modal", "remainder", "carried", "energies")
+STATE = ("modal", "remainder", "carried", "springs", "energies")
 ATTRIBUTES = ("ended", "scenario", "scheme", "step", "steps_per_sample", "last_step", "initial_energy")
 # Larger states overflow in the units of the march.
 LARGEST = 1e100
@@ -99,6 +99,7 @@ def state_at_end(start: xr.Dataset, arrays: Assembly) -> State:
         "modal": modal,
         "remainder": modal,
         "carried": (contacts, at.CARRIED),
+        "springs": (len(arrays.springs.bends),),
         "energies": (at.ENERGIES,),
         "motion": (3, contacts, at.MOTIONS),
     }

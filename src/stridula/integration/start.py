@@ -75,7 +75,8 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
     energies[at.STORED_IN_SPRINGS] = arrays.springs.energy(arrays.position - 0.5 * first)
     energies[at.STORED] = modes.stored_energy(modal) + stored_in_contacts(arrays, carried)
     energies[at.STORED] += energies[at.STORED_IN_SPRINGS]
-    return State(modal, np.zeros_like(modal), carried, energies)
+    springs = arrays.springs.rows @ (3.0 * first - 2.0 * step * arrays.velocity)
+    return State(modal, np.zeros_like(modal), carried, springs, energies)
 
 
 def stored_in_contacts(arrays: Assembly, carried: Array) -> float:
@@ -107,7 +108,7 @@ class _Start:
         moved = arrays.motion(times[1:2], step)[0, :, at.TIP_MOTION] + self.travels[:, 0] @ arrays.position
         places = [one.at + shift for one, shift in zip(arrays.contacts, moved.tolist(), strict=True)]
         self.rows = self._rows_at(places)
-        self.pull = arrays.springs.forces(arrays.position)
+        self.pull = arrays.springs.forces(arrays.position, arrays.velocity)
         self.force = self.factors @ arrays.loads + self.pull
         terms = _terms(arrays, self.force)
         self.materials = np.array([one.at for one in arrays.contacts]) + self.rows[:, 1] @ arrays.position

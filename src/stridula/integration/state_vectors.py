@@ -55,12 +55,12 @@ class StateVectors:
             carried[:, column] = (state.carried[:, after] - state.carried[:, column]) / step
         for column, origin in FROM_MATERIAL:
             carried[:, column] -= state.carried[:, origin]
-        return np.concatenate([state.modal[at.Q], state.modal[at.D] / step, carried.ravel()])
+        return np.concatenate([state.modal[at.Q], state.modal[at.D] / step, carried.ravel(), state.springs / step])
 
     def state(self, vector: Array, step: float, status: Array) -> State:
         """Return the state of a vector at a step [s], with the status of each contact."""
         modal = vector[: 2 * self.count].reshape(2, self.count) * np.array([[1.0], [step]])
-        carried = vector[2 * self.count :].reshape(-1, at.CARRIED).copy()
+        carried = self._carried(vector).copy()
         carried[:, PER_STEP] *= step
         for column, after in reversed(BEFORE):
             carried[:, column] = carried[:, after] - carried[:, column] * step
@@ -68,7 +68,13 @@ class StateVectors:
             carried[:, column] += carried[:, origin]
         carried[:, at.STATUS] = status
         carried[:, SHARES] = np.clip(carried[:, SHARES], 0.0, 1.0)
-        return State(modal, np.zeros_like(modal), carried, np.zeros(at.ENERGIES))
+        springs = vector[vector.size - len(self.arrays.springs.bends) :] * step
+        return State(modal, np.zeros_like(modal), carried, springs, np.zeros(at.ENERGIES))
+
+    def _carried(self, vector: Array) -> Array:
+        """Return what contacts carry in a vector, shape (contacts, scalars)."""
+        first, contacts = 2 * self.count, len(self.arrays.contacts)
+        return vector[first : first + contacts * at.CARRIED].reshape(contacts, at.CARRIED)
 
     @staticmethod
     def status(state: State) -> Array:
@@ -85,13 +91,13 @@ class StateVectors:
         position, velocity = vector[:n], np.where(self.arrays.massless, 0.0, vector[n : 2 * n])
         swung = self._angular * position
         swung[:coupled] = self._root @ position[:coupled]
-        states = vector[2 * n :].reshape(-1, at.CARRIED)[:, STATES] * np.sqrt(self.of_states)
+        states = self._carried(vector)[:, STATES] * np.sqrt(self.of_states)
         return np.concatenate([swung, velocity, states.ravel()])
 
     def of_modes(self, modal: Array, step: float) -> Array:
         """Return positions and increments of the modes, shape (2, modes), as a vector without anything else."""
-        carried = np.zeros(len(self.arrays.contacts) * at.CARRIED)
-        return np.concatenate([modal[at.Q], modal[at.D] / step, carried])
+        rest = np.zeros(len(self.arrays.contacts) * at.CARRIED + len(self.arrays.springs.bends))
+        return np.concatenate([modal[at.Q], modal[at.D] / step, rest])
 
     def moved(self, position: Array, velocity: Array, vector: Array) -> Array:
         """Return a change of positions and velocities of the modes as a vector, with contacts that follow it.
@@ -103,7 +109,7 @@ class StateVectors:
         vector : ndarray
             State that is changed.
         """
-        places = vector[2 * self.count :].reshape(-1, at.CARRIED)[:, at.ABSCISSA].tolist()
+        places = self._carried(vector)[:, at.ABSCISSA].tolist()
         carried = np.zeros((len(places), at.CARRIED))
         for own, one, place in zip(carried, self.arrays.contacts, places, strict=True):
             (rise, *slips), (speed, *rates) = one.rows_at(place) @ position, one.rows_at(place) @ velocity
@@ -112,7 +118,7 @@ class StateVectors:
             for material, abscissa, last, earlier, slip, rate in zip(*ALONG_TANGENTS, slips, rates, strict=False):
                 own[[material, abscissa]] = slip
                 own[[last, earlier]] = rate
-        return np.concatenate([position, velocity, carried.ravel()])
+        return np.concatenate([position, velocity, carried.ravel(), self.arrays.springs.rows @ velocity])
 
     def random(self, seed: int, vector: Array) -> Array:
         """Return a random change of positions and velocities, of similar energy in all modes; see `moved`."""

@@ -25,13 +25,13 @@ WHAT = {
     "not finite": "the state is no longer finite",
     "contact unsolved": "the contact forces did not converge",
     "energy created": "energy was created",
-    "spring too stiff": "the step is too long for the stiffness that a nonlinear spring has reached",
+    "spring too stiff": "the step is too long for the slope that a nonlinear spring or dashpot has reached",
 }
 CAUSE = {
     "not finite": "an instability that grows without bound, or drives far too large",
     "contact unsolved": "bodies squeezed between others, too much friction in several contacts, or too few sweeps",
     "energy created": "a step too long for the contact, numbers at the limits of arithmetic, or a fault of the model",
-    "spring too stiff": "a larger stretch than at the start: give a shorter step",
+    "spring too stiff": "a larger stretch or velocity than at the start: give a shorter step",
 }
 # Words for a status in the step that was not solved: the last is that of a contact that stopped in it.
 STATUS_IN_STEP = (*STATUS_WORDS, "sticking")

@@ -187,6 +187,7 @@ class _Change:
         """Return the march under other forces and other friction."""
         arrays, state, was = self._shifted(position), self.state, self.before.marched.system
         state.modal[at.D] = velocity * self.marched.step
+        state.springs = arrays.springs.rows @ state.modal[at.D]
         for own, before, now in zip(state.carried, was.contacts, self.marched.system.contacts, strict=True):
             if type(now.law) is not type(before.law):
                 own[[at.FRICTION_STATE, at.FRICTION_STATE_B]] = now.law.states_at_start

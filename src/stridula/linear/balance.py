@@ -117,7 +117,7 @@ def balance_of(
         Forces about which rigid contacts that hold the same motion twice are soft; about none if left out.
     """
     count, share = len(status), sense * ratio
-    load = structure.load - structure.damping @ structure.following(status)
+    load = structure.load - _braked(structure, structure.following(status))
     equations, right = _tangent_equations(structure, status, share, load, anchors, about or About(np.zeros((3, count))))
     displacement, loaded = np.zeros(0), equations.response.to(load)
     if exact:
@@ -151,6 +151,22 @@ def balance_of(
         equations.determinant,
         displacement,
     )
+
+
+def _braked(structure: Structure, velocity: Array) -> Array:
+    """Return the modal forces that brake a steady motion with modal velocities.
+
+    Raises
+    ------
+    ValueError
+        If a dashpot by a table takes part in it.
+    """
+    springs = structure.arrays.springs
+    moved = springs.rows[[bend.of_rate for bend in springs.bends]] @ velocity if springs.bends else velocity[:0]
+    if moved.any():
+        words = "be linear where they brake a steady motion of bodies"
+        raise ArgumentError("connections", words, got="a tabulated dashpot of a body that a contact carries along")
+    return np.asarray(structure.damping @ velocity)
 
 
 def at_statuses(

@@ -112,6 +112,8 @@ class Structure:
         self.lines = self._lines(np.zeros(len(system.contacts)))
         self.stiffness, self.damping = arrays.all_stiffness, np.diag(arrays.damping_rate)
         self.damping[:size, :size] = arrays.dissipation
+        if arrays.springs.bends:
+            self.damping = self.damping + arrays.springs.damping()
         self.mass = np.where(arrays.massless, 0.0, 1.0)
         self.rigid = _rigid_motions(self)
         self.passing = self._turn(now)

@@ -10,6 +10,7 @@ import numpy as np
 
 from .._kernels.layout import columns as at
 from .._kernels.layout.laws import STATIC
+from .._kernels.modes.springs import STIFF
 from ..arrays import Array
 from ..bodies.paths import Path
 from ..checks import ArgumentError, at_most
@@ -23,6 +24,10 @@ from .stepping import Stepping
 
 # Largest phase by which waves may turn in a step [rad].
 MOST_TURNED = 0.5
+YIELDING = (
+    "have tabulated dashpots only where residual shapes of contacts hardly yield: place them apart from the contacts,"
+    " or join them through a point mass on a spring"
+)
 
 
 @dataclass(frozen=True)
@@ -332,12 +337,25 @@ class SpringBlocks:
         return (self.numbers.shape[1] - at.OF_SPRING) // at.OF_KINK
 
 
-def spring_blocks(springs: SpringRows, modes: Recurrence) -> SpringBlocks:
-    """Return the nonlinear springs as arrays for the march."""
+def spring_blocks(springs: SpringRows, modes: Recurrence, massless: Array, step: float) -> SpringBlocks:
+    """Return the nonlinear springs as arrays for the march.
+
+    Raises
+    ------
+    ValueError
+        If a dashpot acts where residual shapes yield much: the shorter the step, the larger their rate.
+    """
     rows, kinks = springs.rows, max((bend.place.size for bend in springs.bends), default=0)
     numbers = np.zeros((len(rows), at.OF_SPRING + at.OF_KINK * kinks))
-    numbers[:, at.SPRING_REACH] = np.sum(rows * modes.sawtooth(rows), axis=1)
-    for own, bend in zip(numbers, springs.bends, strict=True):
+    reach = rows * modes.sawtooth(rows)
+    numbers[:, at.SPRING_REACH] = np.sum(reach, axis=1)
+    for own, each, bend in zip(numbers, reach, springs.bends, strict=True):
+        if bend.of_rate:
+            own[at.PER_RATE] = 0.5 / step
+            # A sawtooth has this velocity, by the increments of two steps.
+            own[at.SPRING_REACH] *= 4.0 / step
+            if bend.steepest(0.0) * 4.0 / step * each[massless].sum() > STIFF:
+                raise ArgumentError("connections", YIELDING, got="one at which residual shapes yield in a step")
         own[: at.SPRING_REACH] = bend.constant, bend.linear, bend.cubic
         own[at.OF_SPRING : at.OF_SPRING + at.OF_KINK * bend.place.size] = np.stack(
             [bend.place, bend.right, bend.left], axis=1
@@ -403,5 +421,5 @@ def blocks_of(arrays: Assembly, scheme: Scheme, step: float) -> Blocks:
         )
         for one in arrays.turning
     )
-    probes, springs = probe_blocks(arrays, step), spring_blocks(arrays.springs, modes)
+    probes, springs = probe_blocks(arrays, step), spring_blocks(arrays.springs, modes, arrays.massless, step)
     return Blocks(modes, contact_blocks(arrays, modes), probes, springs, heat_blocks(arrays.contacts, step), turning)

@@ -1,4 +1,4 @@
-"""Nonlinear springs as rows over the modes."""
+"""Nonlinear springs and dashpots as rows over the modes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ UNKNOWN = 1.0
 
 @dataclass(frozen=True)
 class SpringRows:
-    """Nonlinear springs as rows over the modes, beyond their linear parts, which couple the modes.
+    """Nonlinear springs and dashpots as rows over the modes, beyond their linear parts, which couple the modes.
 
     Attributes
     ----------
@@ -26,35 +26,44 @@ class SpringRows:
     bends : tuple of Bend
         Pull of each beyond its linear part.
     at_rest : tuple of float
-        Stiffness of this part [N/m].
+        Stiffness of the linear part [N/m].
     """
 
     rows: Array
     bends: tuple[Bend, ...]
     at_rest: tuple[float, ...]
 
-    def forces(self, position: Array) -> Array:
-        """Return the modal forces at modal positions, shape (modes,)."""
-        pulls = [bend.pull(stretch) for bend, stretch in self._with_stretch(position)]
+    def forces(self, position: Array, velocity: Array) -> Array:
+        """Return the modal forces at modal positions and velocities, shape (modes,)."""
+        moved = np.where([bend.of_rate for bend in self.bends], self.rows @ velocity, self.rows @ position)
+        pulls = [bend.pull(one) for bend, one in zip(self.bends, moved.tolist(), strict=True)]
         return np.asarray(-np.array(pulls) @ self.rows)
 
     def energy(self, position: Array) -> float:
         """Return the stored energy at modal positions [J]."""
-        return sum(bend.energy(stretch) for bend, stretch in self._with_stretch(position))
+        return sum(
+            bend.constant * stretch if bend.of_rate else bend.energy(stretch)
+            for bend, stretch in self._with_stretch(position)
+        )
+
+    def damping(self) -> Array:
+        """Return the damping of dashpots for small motions about rest, shape (modes, modes)."""
+        rates = np.array([bend.stiffness_about_rest() if bend.of_rate else 0.0 for bend in self.bends])
+        return np.asarray(self.rows.T * rates @ self.rows)
 
     def steepest(self) -> tuple[Array, Array]:
         """Return a first stiffness in the search for an equilibrium, the largest of each, with no modal forces."""
         rates = [
-            rate or UNKNOWN * (start == 0.0)
-            for rate, start in zip((one.steepest(0.0) for one in self.bends), self.at_rest, strict=True)
+            0.0 if bend.of_rate else bend.steepest(0.0) or UNKNOWN * (start == 0.0)
+            for bend, start in zip(self.bends, self.at_rest, strict=True)
         ]
         return np.asarray(self.rows.T * np.array(rates) @ self.rows), np.zeros(self.rows.shape[1])
 
     def tangents(self, position: Array) -> tuple[Array, Array]:
-        """Return their stiffness about modal positions, (modes, modes), and the modal forces at the origin."""
-        pairs = self._with_stretch(position)
-        rates = np.array([bend.stiffness(stretch) for bend, stretch in pairs])
-        at_origin = np.array([bend.pull(stretch) - bend.stiffness(stretch) * stretch for bend, stretch in pairs])
+        """Return their stiffness about modal positions, (modes, modes), and the modal forces at the origin, at rest."""
+        moved = [(bend, 0.0 if bend.of_rate else stretch) for bend, stretch in self._with_stretch(position)]
+        rates = np.array([0.0 if bend.of_rate else bend.stiffness(stretch) for bend, stretch in moved])
+        at_origin = np.array([bend.pull(stretch) for bend, stretch in moved]) - rates * [one for _, one in moved]
         return np.asarray(self.rows.T * rates @ self.rows), np.asarray(-at_origin @ self.rows)
 
     def _with_stretch(self, position: Array) -> list[tuple[Bend, float]]:

@@ -431,8 +431,10 @@ def connection_value(connection: Any) -> str:
     """Return a description of the stiffness or coefficient of a connection, and of its motion."""
     if not hasattr(connection, "rates"):
         return str(connection).removeprefix(connection.kind).strip()
-    if connection.bend is not None:
+    if hasattr(connection, "stiffness_at_rest"):
         return f"{spoken(connection.stiffness_at_rest, 'N/m')} at rest"
+    if connection.bend is not None:
+        return str(connection).removeprefix("dashpot ")
     stiffness, damping = connection.rates
     words = spoken(stiffness, "N/m") if stiffness else spoken(damping, "N s/m")
     return f"{words}, moved{in_time(connection.history)}" if connection.moved_by else words

@@ -78,6 +78,7 @@ CONNECTIONS = {
     "dashpot": dashpot,
     "cubic spring": spring,
     "tabulated spring": spring,
+    "tabulated dashpot": dashpot,
     "viscoelastic spring": spring,
     "bushing": spring,
     "rigid joint": bar,

@@ -97,6 +97,7 @@ def to_dataset(
         ("state_modal", ("state_kind", "mode"), state.modal, "modal positions and increments at the end"),
         ("state_remainder", ("state_kind", "mode"), state.remainder, "rounding remainders of state_modal"),
         ("state_carried", ("state_contact", "state_scalar"), state.carried, "scalars of each contact at the end"),
+        ("state_springs", "state_spring", state.springs, "increments of nonlinear springs in the step before the last"),
         ("state_energies", "state_energy", state.energies, "energies carried by the march at the end"),
         (
             "state_motion",

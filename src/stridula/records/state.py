@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ..arrays import Array
 
 # Incremented whenever the meaning of a State, or of its record, changes.
-LAYOUT = 6
+LAYOUT = 7
 
 
 @dataclass
@@ -22,6 +22,8 @@ class State:
         Rounding remainders of these in the units of the march, so that it continues bit by bit.
     carried : ndarray, shape (contacts, scalars)
         Scalars of each contact in the march.
+    springs : ndarray, shape (springs,)
+        Increment of the stretch of each nonlinear spring, or dashpot, in the step before the last one.
     energies : ndarray, shape (energies,)
         Energies since the start.
     """
@@ -29,4 +31,5 @@ class State:
     modal: Array
     remainder: Array
     carried: Array
+    springs: Array
     energies: Array

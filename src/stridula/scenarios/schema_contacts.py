@@ -209,7 +209,7 @@ else:
     Surface = table_of(SurfaceContact, title="Surface", before=_faces, after=_layer)
     Contact = table_of(PointContact, title="Contact", before=_sides, after=_friction)
     _moves = {"history": (History | None, None, "factor on the offset or the velocity over time, constant if left out")}
-    _kinds = "spring, dashpot, cubic spring, tabulated spring, viscoelastic spring, bushing or rigid joint"
+    _kinds = f"{', '.join(kind.kind for kind in CONNECTIONS[:-1])} or {CONNECTIONS[-1].kind}"
     _varies = {kind: any(field.name == "history" for field in fields(kind)) for kind in CONNECTIONS}
     Connection = one_of(
         "kind",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from . import (
     chains,
     clockwork,
+    dampers,
     derivatives,
     falling,
     frequencies,
@@ -50,6 +51,7 @@ CASES: tuple[Case, ...] = (
     *partial_slip.CASES,
     *joints.CASES,
     *chains.CASES,
+    *dampers.CASES,
     *welds.CASES,
     *heating.CASES,
     *jams.CASES,

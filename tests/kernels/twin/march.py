@@ -22,10 +22,12 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
     a, b, load = recurrence = scheme(bodies.stiffness, bodies.damping, h)
     drives = bodies.drives(h)
     q_before, q = start(contacts, bodies, scheme, h)
+    # The velocity now is that of the increments of the last two steps, the earlier one extrapolated to the start.
+    velocity = bodies.start()[1]
     ledger, kept, guess = Ledger(bodies.stiffness, recurrence, h, bodies.stored((q + q_before) / 2)), [], None
     for n in range(steps):
         # 1. Trial.
-        force, pull = drives(n * h), bodies.pulls(q)
+        force, pull = drives(n * h), bodies.pulls(q, velocity)
         trial = a @ q - b @ q_before + load @ (force + pull)
         # 2. Traces.
         for one in contacts:
@@ -42,10 +44,12 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         push = rows.T @ forces_of(touches)
         q_new = trial + load @ push
 
-        ledger.add(contacts, touches, (force, pull, push), (q_before, q, q_new), n)
+        braked = bodies.losses(velocity, (q_new - q_before) / 2)
+        ledger.add(contacts, touches, (force, pull, push, braked), (q_before, q, q_new), n)
         lost = [loss_of(one, touch, q_new) for one, touch in zip(contacts, touches, strict=True)]
         kept.append({"solutions": len(found), **books(contacts, touches, free, q_new), **vars(ledger.sums)})
         kept[-1]["temperature"] = warmed(contacts, lost, h)
+        velocity = (3 * (q_new - q) - (q - q_before)) / (2 * h)
         q_before, q = q, q_new
     trail = SimpleNamespace(**{name: np.array([one[name] for one in kept]) for name in kept[0]})
     trail.last = q_before, q
@@ -70,7 +74,7 @@ def start(contacts, bodies, scheme, h):
     """
     q, velocity = bodies.start()
     a, b, load = scheme(bodies.stiffness, bodies.damping, h)
-    force, still = bodies.drives(h)(0.0) + bodies.pulls(q), np.zeros(bodies.size)
+    force, still = bodies.drives(h)(0.0) + bodies.pulls(q, velocity), np.zeros(bodies.size)
 
     def under(f, q=q, velocity=velocity):
         return before_start(scheme, bodies.stiffness, bodies.damping, h, q, velocity, f)
@@ -143,10 +147,11 @@ class Ledger:
         self.sums = SimpleNamespace(stored=0.0, drive=0.0, contact=0.0, friction=0.0, convection=0.0, damping=0.0)
 
     def add(self, contacts, touches, forces, positions, n):
-        """Add step `n`: forces of drives, nonlinear springs and contacts on the modes, the last three positions."""
-        (force, pull, push), (q_before, q, q_new) = forces, positions
+        """Add step `n`: forces of drives, springs and contacts, losses in dashpots, and the last three positions."""
+        (force, pull, push, braked), (q_before, q, q_new) = forces, positions
         middle, sums = (q_new - q_before) / 2, self.sums
-        self.in_springs -= pull @ middle
+        self.in_springs -= pull @ middle + braked
+        sums.damping += braked
         sums.drive += force @ middle
         sums.contact += push @ middle
         for one, touch in zip(contacts, touches, strict=True):

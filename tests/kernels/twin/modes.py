@@ -67,6 +67,18 @@ def beyond(spring):
     return lambda s: np.interp(s, x, f) - spring.rates[0] * s
 
 
+def past_linear(dashpot):
+    """Pull of a dashpot by a table over its velocity, beyond that of its smallest slope."""
+    v, f = np.array(dashpot.velocity), np.array(dashpot.force)
+    slopes = np.diff(f) / np.diff(v)
+
+    def pull(velocity):
+        line = np.clip(np.sum(velocity >= v) - 1, 0, slopes.size - 1)
+        return f[line] + slopes[line] * (velocity - v[line]) - max(slopes.min(), 0.0) * velocity
+
+    return pull
+
+
 def fine(s):
     """Places from zero to a stretch."""
     return np.linspace(0.0, s, 20001)
@@ -87,25 +99,35 @@ class Bodies:
             self.stiffness[span, span] = np.diag(modes.angular_frequency**2)
             own = np.diag(2 * modes.damping * modes.angular_frequency)
             self.damping[span, span] = own if modes.damping_matrix is None else modes.damping_matrix
-        self.bent = []
+        self.bent, self.braked = [], []
         for joint in system.connections:
             axis = {"x": 0, "y": 1}[joint.direction]
             row = self.trace(joint.first)[axis] - (self.trace(joint.second)[axis] if joint.second else 0.0)
             if isinstance(joint, (st.CubicSpring, st.TabulatedSpring)):
                 self.stiffness += joint.rates[0] * np.outer(row, row)
                 self.bent.append((row, beyond(joint)))
+            elif isinstance(joint, st.TabulatedDashpot):
+                self.damping += joint.rates[1] * np.outer(row, row)
+                self.braked.append((row, past_linear(joint)))
             elif isinstance(joint, st.Spring):
                 self.stiffness += joint.stiffness * np.outer(row, row)
             else:
                 self.damping += joint.coefficient * np.outer(row, row)
 
-    def pulls(self, q):
-        """Modal forces of nonlinear springs beyond their stiffness at the start."""
-        return sum((-pull(row @ q) * row for row, pull in self.bent), np.zeros(self.size))
+    def pulls(self, q, velocity):
+        """Modal forces of nonlinear springs and dashpots beyond their linear parts."""
+        moved = [(row, pull(row @ q)) for row, pull in self.bent]
+        moved += [(row, pull(row @ velocity)) for row, pull in self.braked]
+        return sum((-pulled * row for row, pulled in moved), np.zeros(self.size))
+
+    def losses(self, velocity, way):
+        """Energy that dashpots take on a way, without the work of their force at rest."""
+        return sum((pull(row @ velocity) - pull(0.0)) * (row @ way) for row, pull in self.braked)
 
     def stored(self, q):
         """Energy of these forces, by Simpson's rule on short pieces."""
-        return sum(simpson([pull(s) for s in way], x=way) for row, pull in self.bent for way in [fine(row @ q)])
+        bent = sum(simpson([pull(s) for s in way], x=way) for row, pull in self.bent for way in [fine(row @ q)])
+        return bent + sum(pull(0.0) * (row @ q) for row, pull in self.braked)
 
     def held(self, body):
         return any(isinstance(d, st.ImposedVelocity) and d.point.body == body for d in self.system.drives)

@@ -195,10 +195,11 @@ DISPLACEMENT, VELOCITY, ACCELERATION = range(3)
 # Reasons for the end of a march.
 FINISHED, OFF_TRACK, NOT_FINITE, CONTACT_UNSOLVED, ENERGY_CREATED, TOO_STIFF = range(6)
 
-# Numbers of a nonlinear spring: pull without a stretch, that for a stretch, that for its cube, and the size of its
-# sawtooth under a unit force; then a group for each kink: its place, the change of the stiffness above it and below it.
-CONSTANT_PULL, LINEAR, CUBIC, SPRING_REACH = range(4)
-OF_SPRING, OF_KINK = 4, 3
+# Numbers of a nonlinear spring: pull without a stretch, that for a stretch, that for its cube, the size of its sawtooth
+# under a unit force, and 1 over twice the step, or 0: a dashpot pulls over the rate of its stretch, and has the size of
+# the sawtooth's rate. Then a group for each kink: its place, the change of the stiffness above it and below it.
+CONSTANT_PULL, LINEAR, CUBIC, SPRING_REACH, PER_RATE = range(5)
+OF_SPRING, OF_KINK = 5, 3
 # Numbers of the heating of a contact: share of its loss to friction that heats it; temperatures of its layers after a
 # step [degC] for those before, for a loss [degC/J], and without both; heat capacities [J/K]; 1 if the second is the
 # place along the track, and the share of a step by which the law looks ahead of it.
@@ -207,6 +208,7 @@ PER_LOSS = PER_LAYER + LAYERS * LAYERS
 WITHOUT_LOSS, CAPACITY = PER_LOSS + LAYERS, PER_LOSS + 2 * LAYERS
 BY_PLACE, AHEAD = CAPACITY + LAYERS, CAPACITY + LAYERS + 1
 OF_HEATING = AHEAD + 1
-# State of a nonlinear spring: its pull in this step, and its stretch half a step before it.
-PULL, STRETCH = range(2)
-SPRING_STATE = 2
+# State of a nonlinear spring: its pull in this step, its stretch half a step before it, and its increment in the step
+# before the last one.
+PULL, STRETCH, EARLIER_INCREMENT = range(3)
+SPRING_STATE = 3

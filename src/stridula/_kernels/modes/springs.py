@@ -1,4 +1,4 @@
-"""Nonlinear springs: their pull beyond their linear part, as a load that depends on the positions."""
+"""Nonlinear springs and dashpots: their pull beyond their linear part, as a load that depends on the motion."""
 
 from ..lanes.compiled import inlined, pasted
 from ..lanes.operations import Array, Number, Pair, Runs, add, choose, fused, held, hold, load, spread, total
@@ -41,9 +41,26 @@ def credit_spring(k: int, parts: Parts, n: int, middle: Number, runs: Runs) -> N
     """Add the work against the pull of a spring up to step `n`, whose stretch half a step ago was `middle`."""
     now, here = parts.springs.now, k * at.SPRING_STATE
     if n > 0:
-        work = held(now, here + at.PULL, runs) * (middle - held(now, here + at.STRETCH, runs))
-        add(parts.state.energies, at.STORED_IN_SPRINGS, runs, work)
+        pull, moved = held(now, here + at.PULL, runs), middle - held(now, here + at.STRETCH, runs)
+        work = pull * moved
+        # The pull of a dashpot at rest is a constant force, whose work is stored.
+        constant = held(parts.springs.numbers, first_number(k, parts) + at.CONSTANT_PULL, runs)
+        lost = choose(per_rate(k, parts, runs) > 0.0, (pull - constant) * moved, runs.zero)
+        add(parts.state.energies, at.STORED_IN_SPRINGS, runs, work - lost)
+        add(parts.state.energies, at.DAMPING_LOSS, runs, lost)
     hold(now, here + at.STRETCH, runs, middle)
+
+
+@inlined
+def per_rate(k: int, parts: Parts, runs: Runs) -> Number:
+    """Return 1 over twice the step where spring `k` is a dashpot, else 0."""
+    return held(parts.springs.numbers, first_number(k, parts) + at.PER_RATE, runs)
+
+
+@inlined
+def first_number(k: int, parts: Parts) -> int:
+    """Return the first of the numbers of spring `k`."""
+    return k * (at.OF_SPRING + at.OF_KINK * parts.sizes.kinks)
 
 
 @pasted
@@ -64,9 +81,13 @@ def pull_springs(parts: Parts, n: int, runs: Runs) -> Number:
     for k in range(sizes.springs):
         stretch, increment = stretch_of(modes.rows, pulls + sizes.springs + k, sizes.blocks, runs)
         credit_spring(k, parts, n, stretch - 0.5 * increment, runs)
-        first = k * (at.OF_SPRING + at.OF_KINK * sizes.kinks)
-        pull, stiffness = pull_at(numbers, first, sizes.kinks, stretch, runs)
-        hold(parts.springs.now, k * at.SPRING_STATE + at.PULL, runs, pull)
+        first, here = first_number(k, parts), k * at.SPRING_STATE
+        # The velocity now follows from the last two increments, to second order.
+        rate, before = per_rate(k, parts, runs), held(parts.springs.now, here + at.EARLIER_INCREMENT, runs)
+        moved = choose(rate > 0.0, rate * (3.0 * increment - before), stretch)
+        hold(parts.springs.now, here + at.EARLIER_INCREMENT, runs, increment)
+        pull, stiffness = pull_at(numbers, first, sizes.kinks, moved, runs)
+        hold(parts.springs.now, here + at.PULL, runs, pull)
         set_load(modes.rows, sizes.loads + k, pulls + k, sizes.blocks, runs, -pull)
         stiff = choose(stiffness * held(numbers, first + at.SPRING_REACH, runs) > STIFF, 1.0, runs.zero)
         too_stiff = choose(stiff > 0.5, stiff, too_stiff)
