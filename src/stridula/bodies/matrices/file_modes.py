@@ -44,7 +44,7 @@ def modes_of_file(
     except DeckError as error:
         raise ValueError(f"cannot read {named(path)}: {error}") from None
     if not found.modes:
-        raise ArgumentError("path", "have mode shapes, dataset 55", str(path), got=f"none in {named(path)}")
+        raise ArgumentError("path", "have mode shapes, dataset 55 or 2414", str(path), got=f"none in {named(path)}")
     length, force = _units(found, scale, path)
     _warn(found, path)
     modes = sorted(found.modes, key=lambda mode: mode.frequency)

@@ -139,7 +139,7 @@ class ModalBody(NamedPoints):
         Parameters
         ----------
         path : str or Path
-            The file, with mode shapes in dataset 55, or ``.frd``, ``.op2`` or ``.rst``.
+            The file, with mode shapes in dataset 55 or 2414, or ``.frd``, ``.op2`` or ``.rst``.
         scaling : {"unit modal mass", "unit modal A"}, float or array_like, optional
             Scale of the shapes, or modal masses [kg], in place of those of the file.
         points : mapping, optional
