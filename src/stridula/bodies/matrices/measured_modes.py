@@ -118,10 +118,10 @@ class MeasuredModes:
         """Read the modes of a universal file, or those computed by CalculiX, Nastran or Ansys.
 
         Points have the numbers of their nodes as names. A universal file has shapes in dataset 55 or 2414, nodes in 15
-        or 2411, systems in 2420, units in 164. Its frequencies of normal modes are taken as undamped ones; a hysteretic damping
-        ratio counts half; points are where it moves them in at least one mode. Results of programs are those of modal
-        analyses with real modes: ``.frd`` of CalculiX, as text or binary, ``.op2`` of Nastran, ``.rst`` of Ansys. All
-        their nodes are points, without rotations.
+        or 2411, systems in 2420, units in 164. Its frequencies of normal modes are taken as undamped ones; a hysteretic
+        damping ratio counts half; points are where it moves them in at least one mode. Results of programs are those of
+        modal analyses with real modes: ``.frd`` of CalculiX, as text or binary, ``.op2`` of Nastran, ``.rst`` of Ansys.
+        All their nodes are points, without rotations.
 
         Parameters
         ----------
