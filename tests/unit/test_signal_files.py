@@ -402,6 +402,8 @@ def test_doubtful_and_wrong_calibrations_are_told(tmp_path):
         st.read_signal(path, calibration="100 mV/g")
     with pytest.raises(ValueError, match=r"^units must be those of g, as in the calibration, got 'Pa'$"):
         st.read_signal(tmp_path / "b.csv", calibration="100 mV/g", units="Pa")
+    with pytest.raises(ValueError, match=r"^calibration must be finite, got inf"):
+        st.read_signal(tmp_path / "b.csv", calibration="1e999 mV/g")
     with pytest.raises(ValueError, match=r"^calibration must differ from 0, got '0 mV/g'$"):
         st.read_signal(tmp_path / "b.csv", calibration="0 mV/g")
 

@@ -101,7 +101,7 @@ def _of_sensor(name: str, units: str, given: str, wanted: str | None) -> tuple[f
     kind = UNITS.get(output, ("", 0.0))[0]
     if not match or kind not in OUTPUTS or UNITS.get(quantity, (OUTPUTS[0], 0.0))[0] in OUTPUTS:
         raise ArgumentError("calibration", "be a number, or a sensitivity such as '100 mV/g' or '50 mV/Pa'", given)
-    size = float(match[1])
+    size = finite("calibration", float(match[1]))
     if size == 0.0:
         raise ArgumentError("calibration", "differ from 0", given)
     into = _ratio(units, output)

@@ -41,6 +41,8 @@ OTHERS = {
 }
 # Relative difference between a given scale and that of a file, and of two frequencies, that is due to rounding.
 ROUNDING = 1e-4
+# Size of numbers from which their squares overflow.
+LARGEST = 1e100
 # Cosine of the angle of two shapes above which they are the same.
 ALIKE = 0.999
 
@@ -115,9 +117,16 @@ def _read(
         ".rst": lambda: read_rst(path),
     }
     try:
-        found = readers[ending]()
+        # Numbers of damaged files are checked after they are converted.
+        with np.errstate(all="ignore"):
+            found = readers[ending]()
     except DeckError as error:
         raise ValueError(f"cannot read {named(path)}: {error}") from None
+    for word, array in (("place", found.places), ("displacement", found.shapes), ("frequency", found.frequency)):
+        if not (np.abs(array) < LARGEST).all():
+            raise ValueError(
+                f"cannot read {named(path)}: a {word} is not finite, or {LARGEST:g} and more: it is damaged"
+            )
     warn_of([f"{named(path)}: {words}" for words in found.doubts], LeftOut)
     return found
 
