@@ -34,7 +34,8 @@ def record(*names: str) -> None:
 
 
 def recordings() -> None:
-    """Write the recordings that pages assume."""
+    """Write the recordings and the modes that pages assume."""
+    shutil.copy(ROOT / "tests" / "unit" / "modes" / "block.frd", "block.frd")
     time = np.arange(int(25.6e3)) / 25.6e3
     tone = 0.3 * np.sin(2.0 * np.pi * 2300.0 * time)
     sound = xr.DataArray(tone, {"time": time}, ("time",), "microphone", {"units": "Pa"})

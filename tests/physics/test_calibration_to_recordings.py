@@ -10,7 +10,7 @@ import xarray as xr
 
 import stridula as st
 from stridula import analysis, plot
-from stridula.studies.signal_measures import HarmonicLevel, bands_of, shape_of
+from stridula.studies.signal_measures import HarmonicLevel, bands_of, measured_of, shape_of
 
 RATE = 5e3
 
@@ -100,7 +100,11 @@ def test_what_a_recording_does_not_determine_is_said():
     assert high - low > 0.5
     figure = plot.calibration(found)
     assert "load" in figure.get_suptitle()
-    assert len(figure.axes[1].get_yticks()) == found.sizes["measure"]
+    labels = [one.get_text() for one in figure.axes[1].get_yticklabels()]
+    assert len(labels) == found.sizes["measure"]
+    assert labels[0] == f"frequency\n{float(found['measured'][0]):.5g} Hz"
+    assert all(one.endswith(" dB re 1 m/s") for one in labels[1:])
+    assert found["measured"].to_dataframe()["measure_unit"].iloc[0] == "Hz"
 
 
 def test_a_model_that_cannot_vibrate_so_is_doubted():
@@ -139,8 +143,25 @@ def test_measures_of_ones_own_need_no_tone():
         deviations={"sticks": 0.01}, population=8, generations=4,
     )  # fmt: skip
     assert found["measure"].values.tolist() == ["sticks", "frequency"]
+    assert found["measure_unit"].values.tolist() == ["unknown", "Hz"]
+    assert plot.calibration(found).axes[1].get_yticklabels()[0].get_text().count(" ") == 0
     assert float(found["deviation"][0]) == 0.01
     assert float(found["low"][0]) < 0.4 < float(found["high"][0])
+
+
+@pytest.mark.parametrize(("units", "of_level"), [("m/s2", "dB re 1 m/s2"), ("unknown", "dB"), (None, "dB")])
+def test_measures_have_units(units, of_level):
+    """Of one's own, from what a function returns or from its attribute."""
+    time = np.arange(20000) / RATE
+    words = {} if units is None else {"units": units}
+    signal = xr.DataArray(np.sin(2.0 * np.pi * 90.0 * time), {"time": time}, ("time",), attrs=words)
+    found = measured_of(signal, None, 8, None)
+    assert dict(zip(found.measures, found.measure_units, strict=True)) == {"frequency": "Hz", "harmonic_1": of_level}
+    mean_square = lambda one: (one**2).mean().assign_attrs(units="m2/s4")  # noqa: E731
+    crest = lambda one: float(abs(one).max() / one.std())  # noqa: E731
+    crest.units = "1"
+    own = measured_of(signal, {"power": mean_square, "crest": crest, "peak": lambda one: float(one.max())}, 8, None)
+    assert own.measure_units == ("m2/s4", "1", "unknown")
 
 
 @pytest.mark.parametrize("level", [0.0, 0.03, 0.3])

@@ -11,6 +11,7 @@ import soundfile
 import xarray as xr
 
 import stridula as st
+from stridula.doubtful import DoubtfulValue
 
 # pyuff leaves binary files open.
 pytestmark = [
@@ -349,6 +350,62 @@ def test_a_sound_without_calibration_is_relative_and_has_no_level(tmp_path):
     assert shaken.attrs["units"] == "m/s2"
     with pytest.raises(ValueError, match=r"^pressure must be in Pa, got 'm/s2'$"):
         st.equivalent_level(shaken)
+
+
+def channel(path, units):
+    """Write a channel from -2 to 2 in some units."""
+    path.write_text(f"time [s],x [{units}]\n" + "".join(f"{k / 10},{k - 2}\n" for k in range(5)))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("units", "sensitivity", "wanted", "factor", "result"),
+    [
+        ("V", "100 mV/g", None, 10.0, "g"),
+        ("V", "100 mV/g", "m/s2", 98.0665, "m/s2"),
+        ("mV", "10.2 mV/(m/s^2)", None, 1.0 / 10.2, "m/s2"),
+        ("V", "50 mV/Pa", "Pa", 20.0, "Pa"),
+        ("V", "2.5e-2 V/kN", "N", 40e3, "N"),
+        ("nC", "-4 pC/N", None, -250.0, "N"),
+    ],
+)
+def test_sensitivities_of_sensors_are_divided_by(tmp_path, units, sensitivity, wanted, factor, result):
+    found = st.read_signal(channel(tmp_path / "a.csv", units), calibration=sensitivity, units=wanted)
+    np.testing.assert_allclose(found, factor * np.arange(-2.0, 3.0), rtol=1e-12)
+    assert found.attrs["units"] == result
+
+
+@pytest.mark.parametrize(
+    ("units", "wanted", "factor"),
+    [("g", "m/s2", 9.80665), ("mm/s", "m/s", 1e-3), ("kN", "N", 1e3), ("bar", "kPa", 100.0), ("µm", "mm", 1e-3)],
+)
+def test_units_of_the_same_quantity_are_converted(tmp_path, units, wanted, factor):
+    found = st.read_signal(channel(tmp_path / "a.csv", units), units=wanted)
+    np.testing.assert_allclose(found, factor * np.arange(-2.0, 3.0), rtol=1e-12)
+    assert found.attrs["units"] == wanted
+
+
+def test_doubtful_and_wrong_calibrations_are_told(tmp_path):
+    path = channel(tmp_path / "a.csv", "g")
+    with pytest.warns(DoubtfulValue, match=r"^calibration of 'x' is 0.102, but 1 g is 9.80665 m/s2; leave it out"):
+        found = st.read_signal(path, calibration=0.102, units="m/s2")
+    np.testing.assert_allclose(found, 0.102 * np.arange(-2.0, 3.0))
+    with pytest.warns(DoubtfulValue, match=r"turns 'x', an acceleration in g, into a pressure in Pa$"):
+        st.read_signal(path, calibration=2.0, units="Pa")
+    # Neither the conversion itself nor the output of a sensor is doubtful.
+    st.read_signal(path, calibration=9.81, units="m/s2")
+    st.read_signal(channel(tmp_path / "b.csv", "V"), calibration=10.0, units="Pa")
+    for given in ("100", "100 g/mV", "100 mV/mA", "1.2.3 mV/g", "10,2 mV/g", "mV/g"):
+        with pytest.raises(ValueError, match=r"^calibration must be a number, or a sensitivity such as '100 mV/g'"):
+            st.read_signal(tmp_path / "b.csv", calibration=given)
+    with pytest.raises(ValueError, match=r"^calibration must be a number for 'x', whose units are g: a sensitivity in"):
+        st.read_signal(path, calibration="100 mV/g")
+    with pytest.raises(ValueError, match=r"^units must be those of g, as in the calibration, got 'Pa'$"):
+        st.read_signal(tmp_path / "b.csv", calibration="100 mV/g", units="Pa")
+    with pytest.raises(ValueError, match=r"^calibration must be finite, got inf"):
+        st.read_signal(tmp_path / "b.csv", calibration="1e999 mV/g")
+    with pytest.raises(ValueError, match=r"^calibration must differ from 0, got '0 mV/g'$"):
+        st.read_signal(tmp_path / "b.csv", calibration="0 mV/g")
 
 
 def test_a_calibration_needs_units_and_units_a_calibration(tmp_path):

@@ -13,6 +13,9 @@ from .results import check_result
 NEEDED = ("value", "low", "high", "lowest", "highest", "measured", "error", "misfit")
 # Height of a row and of what surrounds them [inches].
 ROW, REST = 0.34, 1.5
+# Units that are not shown.
+UNKNOWN = "unknown"
+SILENT = (UNKNOWN, "1")
 # Errors up to which a model fits, in standard deviations.
 FITS = 2.0
 
@@ -80,7 +83,10 @@ def _draw_errors(axes: Axes, found: xr.Dataset) -> None:
     axes.axvspan(-FITS, FITS, color="0.85", linewidth=0)
     axes.axvline(0.0, color="0.3", linewidth=0.8)
     axes.plot(found["error"].values, places, "o", color=LINE, markersize=5)
-    names = [f"{name}\n{one:.5g}" for name, one in zip(found["measure"].values, found["measured"].values, strict=True)]
+    # Results of before have no units of measures.
+    units = found["measure_unit"].values if "measure_unit" in found.coords else [UNKNOWN] * places.size
+    rows = zip(found["measure"].values, found["measured"].values, units, strict=True)
+    names = [f"{name}\n{one:.5g}{'' if unit in SILENT else f' {unit}'}" for name, one, unit in rows]
     axes.set_yticks(places, names, fontsize=8)
     axes.set_ylim(places.size - 0.4, -0.6)
     most = 1.1 * max(float(np.abs(found["error"].values).max()), 1.5 * FITS)

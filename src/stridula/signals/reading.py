@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..checks import ArgumentError, finite, listed, positive
+from ..checks import ArgumentError, listed, positive
 from ..disk import check_path, named
 from . import sound_files
-from .channels import TIMES, Channel, checked_rate, chosen, plain_units
+from .channels import TIMES, Channel, checked_rate, chosen
+from .conversions import factor_of
 
 TABLES = (".csv", ".tsv", ".txt", ".dat", ".asc")
 UNIVERSAL = (".uff", ".unv", ".uf", ".58")
@@ -27,7 +28,7 @@ def read_signal(
     path: str | os.PathLike[str],
     channel: str | None = None,
     *,
-    calibration: float | Mapping[str, float] | None = None,
+    calibration: float | str | Mapping[str, float | str] | None = None,
     units: str | Mapping[str, str] | None = None,
     sample_rate: float | None = None,
     decimal: str = ".",
@@ -44,12 +45,13 @@ def read_signal(
         The file.
     channel : str, optional
         Name of a channel; needed if the file has several.
-    calibration : float or mapping, optional
-        Value of a sample of 1, in `units`: for a sound file the value of full scale. A mapping has one for each channel
-        by its name.
+    calibration : float, str or mapping, optional
+        Value of a sample of 1, in `units`: for a sound file the value of full scale. Or the sensitivity of the sensor
+        of a channel in volts, amperes or coulombs: ``"100 mV/g"``. A mapping has one for each channel by its name.
     units : str or mapping, optional
-        Units of the result; those of the file if left out. Needed with a calibration. A mapping may also have the units
-        of ``time``.
+        Units of the result; those of the file or of the sensitivity if left out. Needed with another calibration.
+        Units of the same quantity, such as ``m/s2`` for ``g``, are converted. A mapping may also have the units of
+        ``time``.
     sample_rate : float, optional
         Sample rate [Hz] of a file that does not state one.
     decimal : {".", ","}, optional
@@ -82,7 +84,7 @@ def read_signals(
     path: str | os.PathLike[str],
     channels: Sequence[str] | None = None,
     *,
-    calibration: float | Mapping[str, float] | None = None,
+    calibration: float | str | Mapping[str, float | str] | None = None,
     units: str | Mapping[str, str] | None = None,
     sample_rate: float | None = None,
     decimal: str = ".",
@@ -95,8 +97,8 @@ def read_signals(
         The file, as for `read_signal`.
     channels : sequence of str, optional
         Names of the channels; all of them if left out.
-    calibration : float or mapping, optional
-        Value of a sample of 1, as for `read_signal`.
+    calibration : float, str or mapping, optional
+        Value of a sample of 1 or sensitivity, as for `read_signal`.
     units : str or mapping, optional
         Units of the result, as for `read_signal`.
     sample_rate : float, optional
@@ -200,24 +202,10 @@ def _calibrated(path: Any, names: list[str], found: list[Channel], calibration: 
     words = _by_name("units", units, [*names, *TIMES], named(path))
     calibrated = []
     for one in found:
-        factor, word = factors.get(one.name), words.get(one.name)
-        if factor is not None and word is None:
-            raise ArgumentError("units", f"be given with the calibration of {one.name!r}", got="none")
-        if word is not None and (not isinstance(word, str) or not word.strip()):
-            raise ArgumentError("units", "be a text, such as 'm/s2'", word)
-        if factor is not None:
-            size = finite("calibration", factor)
-            if size == 0.0:
-                raise ArgumentError("calibration", "differ from 0", factor)
-            if one.units == plain_units(str(word)):
-                allowed = f"be left out for {one.name!r}, which the file has in {one.units}: it would be scaled twice"
-                raise ArgumentError("calibration", allowed, factor)
-            one = replace(one, values=one.values * size, meaning="")
-        if word is not None:
-            plain = plain_units(word)
-            if factor is None and one.units not in ("unknown", plain):
-                raise ArgumentError("calibration", f"be given to turn {one.units!r} into {plain!r}", got="none")
-            one = replace(one, units=plain)
+        given, word = factors.get(one.name), words.get(one.name)
+        factor, plain = factor_of(one.name, one.units, given, word)
+        meaning = one.meaning if given is None else ""
+        one = replace(one, values=one.values if factor == 1.0 else one.values * factor, units=plain, meaning=meaning)
         calibrated.append(one)
     return calibrated
 

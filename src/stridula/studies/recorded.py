@@ -88,8 +88,9 @@ def calibrate_to(
         What of a record is compared, in the unit of the recording: a variable of one probe, or a function of the
         record. The first tenth of a run is left out.
     measures : mapping, optional
-        Functions of a vibration by name. By default the ``frequency`` [Hz] and, of a tone, the level of each harmonic
-        that is clear of the noise; of any other vibration its ``level``, and that in bands within 20 dB of the
+        Functions of a vibration by name; their units are those of what they return (``attrs["units"]``) or of their
+        attribute ``units``, else ``unknown``. By default the ``frequency`` [Hz] and, of a tone, the level of each
+        harmonic that is clear of the noise; of any other vibration its ``level``, and that in bands within 20 dB of the
         strongest [dB].
     deviations : mapping, optional
         Standard deviations of measures by name. By default those of the means over `parts`, at least 0.1 % of a
@@ -108,9 +109,9 @@ def calibrate_to(
     xarray.Dataset
         Over ``parameter`` the ``value`` and the ends ``low`` and ``high`` of its interval of 95 %, in the unit of its
         range from ``lowest`` to ``highest``, and whether it is ``determined``; the ``correlation`` with each ``other``.
-        Over ``measure`` what is ``measured``, with its ``deviation``, and ``computed``, and the ``error``. Scalar
-        ``scatter``, the standard deviation of errors between nearly equal runs: above 0.3 a warning says that the
-        vibration is chaotic, and errors are the means of many runs; and
+        Over ``measure``, with its ``measure_unit``, what is ``measured``, with its ``deviation``, and ``computed``, and
+        the ``error`` in standard deviations. Scalar ``scatter``, the standard deviation of errors between nearly equal
+        runs: above 0.3 a warning says that the vibration is chaotic, and errors are the means of many runs; and
         ``misfit``, the root of the squared errors per degree of freedom [1]: about 1 where the model fits; a warning
         says so if it is 5 or more. The attribute ``undetermined`` says what the recording does not determine, and is
         empty if it determines all.
@@ -288,7 +289,9 @@ class _Fit:
         found = xr.Dataset(data, places, {"undetermined": _undetermined(names, determined, correlation)})
         for name, meaning in WORDS.items():
             found[name].attrs["long_name"] = meaning
-        found = found.assign_coords(unit=("parameter", units))
+        found = found.assign_coords(
+            unit=("parameter", units), measure_unit=("measure", list(self.measured.measure_units))
+        )
         words = "standard deviation of the errors of nearly equal runs"
         found["scatter"] = ((), lines.scatter, {"units": "1", "long_name": words})
         found["misfit"] = ((), misfit, {"units": "1", "long_name": "root mean square of the errors"})

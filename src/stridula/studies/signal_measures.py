@@ -20,6 +20,8 @@ from .calibration import Target
 
 Signal = str | Callable[[xr.Dataset], xr.DataArray]
 OfSignal = Callable[[xr.DataArray], float]
+# Units that neither a file nor a function states.
+UNKNOWN = "unknown"
 # Centres of bands that are compared: a third of an octave apart, those at most this level below the strongest [dB].
 THIRD, BELOW = 2.0 ** (1.0 / 3.0), 20.0
 # Harmonics that are compared, the share of the power that makes a tone with them [1], half of the width of their bands
@@ -83,6 +85,10 @@ class HarmonicLevel:
         first = frequency(signal)
         within = np.abs(found - self.number * first) < HALF * first
         return _decibels(float(power[within].sum() - _mean_of_noise(power) * within.sum()))
+
+
+# Units of functions that return a number alone.
+OF_FUNCTIONS: tuple[tuple[OfSignal, str], ...] = ((frequency, "Hz"), (dominant_frequency, "Hz"))
 
 
 def shape_of(signal: xr.DataArray) -> dict[str, OfSignal]:
@@ -198,12 +204,15 @@ class Measured:
         Their values for the recording, and their standard deviations.
     units : str
         Units of the recording, empty if they are unknown.
+    measure_units : tuple of str
+        Units of the measures, `UNKNOWN` where a function does not say them.
     """
 
     measures: dict[str, OfSignal]
     values: Array
     deviations: Array
     units: str
+    measure_units: tuple[str, ...]
 
     def of_record(self, signal: Signal) -> dict[str, OfRecord]:
         """Return the measures as functions of a record."""
@@ -228,13 +237,14 @@ def measured_of(
             "recording", "be finite and vibrate", recording, got="values that are not finite, or constant"
         )
     taken = {"frequency": frequency, **shape_of(recording)} if measures is None else _own(measures)
-    found = np.array([one(recording) for one in taken.values()])
+    results = [one(recording) for one in taken.values()]
+    found = np.array([float(one) for one in results])
     lacking = [name for name, value in zip(taken, found, strict=True) if not np.isfinite(value)]
     if lacking:
         raise ArgumentError("recording", "have these measures", got=f"none of {listed(lacking)}")
     size = values.size // count("parts", parts, low=4)
     pieces = [recording.isel(time=slice(k * size, (k + 1) * size)) for k in range(parts)]
-    spread = np.array([[one(piece) for piece in pieces] for one in taken.values()])
+    spread = np.array([[float(one(piece)) for piece in pieces] for one in taken.values()])
     known = np.isfinite(spread).all(axis=1)
     own = np.where(known, np.std(np.where(known[:, None], spread, 0.0), axis=1, ddof=1) / np.sqrt(parts), 0.0)
     is_level = np.array([measures is None and name != "frequency" for name in taken])
@@ -247,7 +257,19 @@ def measured_of(
         zero = listed(name for name, one in zip(taken, sizes, strict=True) if not one > 0.0)
         raise ArgumentError("deviations", f"be given for {zero}, which is the same in all parts of the recording")
     units = str(recording.attrs.get("units", ""))
-    return Measured(taken, found, sizes, "" if units == "unknown" else units)
+    units = "" if units == UNKNOWN else units
+    of_level = f"dB re 1 {units}" if units else "dB"
+    each = zip(taken.values(), results, is_level, strict=True)
+    words = tuple(of_level if level else _units_of(one, result) for one, result, level in each)
+    return Measured(taken, found, sizes, units, words)
+
+
+def _units_of(measure: OfSignal, result: Any) -> str:
+    """Return the units of a measure: those of its result, its attribute, or those of a function of this package."""
+    given = getattr(result, "attrs", {}).get("units", getattr(measure, "units", None))
+    if isinstance(given, str) and given:
+        return given
+    return next((units for one, units in OF_FUNCTIONS if one is measure), UNKNOWN)
 
 
 def _own(measures: Any) -> dict[str, OfSignal]:

@@ -41,6 +41,25 @@ class System:
         found: Array = self.origin + _rectangular(self.kind, coordinates) @ self.axes
         return found
 
+    def directions(self, places: Array) -> Array:
+        """Return the unit vectors of its coordinates at places in the basic system, a row each, (points, 3, 3).
+
+        Where an angle is not defined, on the axis, it is 0.
+        """
+        if self.kind == "R":
+            return np.broadcast_to(self.axes, (len(places), 3, 3))
+        x, y, z = self.axes @ (places - self.origin).T
+        phi = np.arctan2(y, x)
+        theta = np.arctan2(np.hypot(x, y), z) if self.kind == "S" else np.full_like(phi, 0.5 * np.pi)
+        none = np.zeros_like(phi)
+        outward = [np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)]
+        down = [np.cos(theta) * np.cos(phi), np.cos(theta) * np.sin(phi), -np.sin(theta)]
+        around = [-np.sin(phi), np.cos(phi), none]
+        upward = [none, none, np.ones_like(phi)]
+        rows = [outward, down, around] if self.kind == "S" else [outward, around, upward]
+        found: Array = np.einsum("rak->kra", np.array(rows)) @ self.axes
+        return found
+
 
 def _rectangular(kind: str, coordinates: Array) -> Array:
     if kind == "R":

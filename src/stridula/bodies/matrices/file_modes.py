@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
-from ...checks import ArgumentError, counted, listed
+from ...checks import ArgumentError, counted, listed, positive
 from ...disk import check_path, named
 from ...doubtful import warn_of
 from ..reading.deck_error import DeckError
 from ..reading.universal import datasets
 from ..reading.universal_nodes import Geometry
+from .result_modes import ratios
 from .universal_modes import FileMode, FileModes, read_universal_modes
 
 UNIT_MASS, UNIT_A = "unit modal mass", "unit modal A"
@@ -30,6 +31,8 @@ def modes_of_file(
     geometry: str | os.PathLike[str] | None,
     quantity: str | None,
     directions: str | None,
+    damping: Any = None,
+    scale: float | None = None,
 ) -> dict[str, Any]:
     """Return the arguments of `MeasuredModes` from a universal file; its `read` documents the parameters."""
     if geometry is not None:
@@ -41,15 +44,15 @@ def modes_of_file(
     except DeckError as error:
         raise ValueError(f"cannot read {named(path)}: {error}") from None
     if not found.modes:
-        raise ArgumentError("path", "have mode shapes, dataset 55", str(path), got=f"none in {named(path)}")
+        raise ArgumentError("path", "have mode shapes, dataset 55 or 2414", str(path), got=f"none in {named(path)}")
+    length, force = _units(found, scale, path)
     _warn(found, path)
     modes = sorted(found.modes, key=lambda mode: mode.frequency)
-    length, force = found.geometry.units or (1.0, 1.0)
     _check_once(modes, found.nodes, path)
     shapes, given = _scaled(modes, found.nodes, scaling, length / force, path)
     return {
-        "frequency": [mode.frequency for mode in modes],
-        "damping": [mode.damping for mode in modes],
+        "frequency": (frequency := np.array([mode.frequency for mode in modes])),
+        "damping": [mode.damping for mode in modes] if damping is None else ratios(damping, frequency),
         "shapes": shapes,
         "points": points,
         "scaling": given,
@@ -81,11 +84,22 @@ def _check_once(modes: list[FileMode], nodes: tuple[int, ...], path: str | os.Pa
                 raise ValueError(f"cannot read {named(path)}: line {other.line}: {words}")
 
 
+def _units(found: FileModes, scale: float | None, path: str | os.PathLike[str]) -> tuple[float, float]:
+    """Return length and force of a file per metre and newton: as it states, or metres of the scale with newtons."""
+    stated = found.geometry.units
+    if scale is None:
+        if stated is None:
+            warn_of([f"{named(path)} has no units, dataset 164: taken as SI"])
+        return stated or (1.0, 1.0)
+    length = 1.0 / positive("scale", scale)
+    if stated is not None and not np.isclose(length, stated[0], rtol=ROUNDING):
+        raise ArgumentError("scale", f"be {1.0 / stated[0]:g}, as dataset 164 states, or left out", scale)
+    return stated or (length, 1.0)
+
+
 def _warn(found: FileModes, path: str | os.PathLike[str]) -> None:
     """Warn of what the file leaves open."""
     doubts = []
-    if found.geometry.units is None:
-        doubts.append(f"{named(path)} has no units, dataset 164: taken as SI")
     every = set(found.nodes)
     for mode in found.modes:
         if lost := every - set(mode.shape):

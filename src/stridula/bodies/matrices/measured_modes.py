@@ -14,11 +14,13 @@ from ...arrays import Array
 from ...checks import ArgumentError, choice, counted, instance, listed
 from ...disk import check_path, write
 from ...doubtful import warn_of
+from ..matrix_files import Nodes
 from ..matrix_input import check_finite, numbers
 from .file_modes import UNIT_A, UNIT_MASS, modes_of_file
 from .modal_body import ModalBody
 from .real_shapes import RealShapes, real_shapes
 from .residues import shapes_of_residues, split
+from .result_modes import ending_of, modes_of_results
 from .universal_modes import GLOBAL, LOCAL
 from .universal_writing import universal_text
 
@@ -110,12 +112,16 @@ class MeasuredModes:
         geometry: str | os.PathLike[str] | None = None,
         quantity: str | None = None,
         directions: str | None = None,
+        scale: float | None = None,
+        damping: Any = None,
     ) -> MeasuredModes:
-        """Read the modes of a universal file: shapes of dataset 55, nodes of 15 or 2411, systems of 2420, units of 164.
+        """Read the modes of a universal file, or those computed by CalculiX, Nastran or Ansys.
 
-        Values are converted to SI by dataset 164; without it they are taken as SI, with a warning. Frequencies of
-        normal modes are taken as undamped ones; a hysteretic damping ratio counts half. Points have the numbers of
-        their nodes as names, and are where the file moves them in at least one mode.
+        Points have the numbers of their nodes as names. A universal file has shapes in dataset 55 or 2414, nodes in 15
+        or 2411, systems in 2420, units in 164. Its frequencies of normal modes are taken as undamped ones; a hysteretic
+        damping ratio counts half; points are where it moves them in at least one mode. Results of programs are those of
+        modal analyses with real modes: ``.frd`` of CalculiX, as text or binary, ``.op2`` of Nastran, ``.rst`` of Ansys.
+        All their nodes are points, without rotations.
 
         Parameters
         ----------
@@ -123,13 +129,19 @@ class MeasuredModes:
             The file.
         scaling : {"unit modal mass", "unit modal A"}, float or array_like, optional
             Scale of the shapes in place of the modal masses or modal A of the file: 1 in its units, or modal masses
-            [kg].
+            [kg]. A ``.rst`` has no scale: ``"unit modal mass"`` is the default of Ansys (MODOPT).
         geometry : str or Path, optional
-            A universal file with the nodes, if they are not in the same file.
+            A universal file with the nodes, or the deck of a ``.op2``, if they are not in the same file.
         quantity : {"displacement"}, optional
             Confirms that shapes that the file calls velocities or accelerations have the scale of displacements.
         directions : {"global", "local"}, optional
-            Directions of shapes at nodes with a displacement coordinate system of their own; needed there.
+            Directions of shapes at nodes with a displacement coordinate system of their own; needed there in universal
+            files, and for the table OUGV1PAT of a ``.op2``.
+        scale : float, optional
+            Length of the unit of the file [m] where it states none, 1e-3 for mm with N and s; without it such a file is
+            taken as SI, with a warning.
+        damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
+            Damping ratios [1] in place of those of the file; computed modes have none without it.
 
         Returns
         -------
@@ -139,7 +151,8 @@ class MeasuredModes:
         Raises
         ------
         ValueError
-            If the file has no modes, or a line cannot be read; the message has file and line.
+            If the file has no modes, a line or a record cannot be read, or an argument contradicts the file; the
+            message has file and place.
         OSError
             If it cannot be read.
         """
@@ -148,7 +161,11 @@ class MeasuredModes:
             choice("quantity", quantity, ("displacement",))
         if directions is not None:
             choice("directions", directions, (GLOBAL, LOCAL))
-        return cls(**modes_of_file(path, scaling, geometry, quantity, directions))
+        if not ending_of(path):
+            return cls(**modes_of_file(path, scaling, geometry, quantity, directions, damping, scale))
+        if quantity is not None:
+            raise ArgumentError("quantity", "be left out for results, which have displacements", quantity)
+        return cls(**modes_of_results(path, scaling, damping, scale, geometry, directions))
 
     @classmethod
     def from_residues(
@@ -221,7 +238,7 @@ class MeasuredModes:
         """Share of the square of each shape that `body` loses [1], shape (modes,)."""
         return self._real(self.shapes).lost
 
-    def body(self, points: Mapping[str, str] | None = None, name: str = "") -> ModalBody:
+    def body(self, points: Mapping[str, Any] | None = None, name: str = "") -> ModalBody:
         """Return a body with these modes.
 
         Complex shapes are rotated to the phase of their largest real part, which is kept. A shape that loses more than
@@ -232,7 +249,8 @@ class MeasuredModes:
         Parameters
         ----------
         points : mapping, optional
-            Measured points by their new names, ``{"tip": "7"}``; all with their own if left out.
+            Measured points, or the places of measured points [m], by their new names: ``{"tip": "7"}``,
+            ``{"tip": (0.1, 0.0, 0.02)}``; all with their own names if left out.
         name : str, optional
             Name in records.
 
@@ -244,18 +262,33 @@ class MeasuredModes:
         Raises
         ------
         ValueError
-            If the scale is not known, or a point is not measured.
+            If the scale is not known, or a point is not measured, or none is at a place.
         """
         given = dict(zip(self.points, self.points, strict=True)) if points is None else points
         instance("points", given, Mapping)
         real = self._real(self.normalised)
         warn_of(_losses(real, self))
         shapes = real.shapes.reshape(self.shapes.shape)
-        at = {new: self.points.index(choice(f"points[{new!r}]", old, self.points)) for new, old in given.items()}
+        at = self._rows(given)
         angular = 2.0 * np.pi * self.frequency
         places = None if self.places is None else {new: self.places[row] for new, row in at.items()}
         rows = {new: shapes[row] for new, row in at.items()}
         return ModalBody(angular, rows, 2.0 * self.damping * angular, name=name, places=places)
+
+    def _rows(self, given: Mapping[str, Any]) -> dict[str, int]:
+        """Return the rows of points that are given by name or place."""
+        row = {name: number for number, name in enumerate(self.points)}
+        found = {}
+        for new, old in given.items():
+            word = f"points[{new!r}]"
+            if isinstance(old, str) or not np.iterable(old):
+                found[new] = row[old] if isinstance(old, str) and old in row else row[choice(word, old, self.points)]
+            elif self.places is None:
+                raise ArgumentError(word, "be the name of a measured point where places are not known", old)
+            else:
+                place = _numbers(word, old, (3,))
+                found[new] = Nodes(np.arange(len(self.points)), self.places).nearest(word, place.tolist())
+        return found
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the modes as a universal file: units of 164, nodes of 2411, shapes of 55 with their scale.

@@ -124,45 +124,52 @@ class ModalBody(NamedPoints):
         path: str | os.PathLike[str],
         scaling: Any = None,
         *,
-        points: Mapping[str, str] | None = None,
+        points: Mapping[str, Any] | None = None,
         name: str = "",
         geometry: str | os.PathLike[str] | None = None,
         quantity: str | None = None,
         directions: str | None = None,
+        scale: float | None = None,
+        damping: Any = None,
     ) -> ModalBody:
-        """Read the modes of a modal test from a universal file.
+        """Read the modes of a modal test from a universal file, or those computed by CalculiX, Nastran or Ansys.
 
         Short for ``MeasuredModes.read(path, scaling, ...).body(points, name)``, which has the details.
 
         Parameters
         ----------
         path : str or Path
-            The file, with mode shapes in dataset 55.
+            The file, with mode shapes in dataset 55 or 2414, or ``.frd``, ``.op2`` or ``.rst``.
         scaling : {"unit modal mass", "unit modal A"}, float or array_like, optional
             Scale of the shapes, or modal masses [kg], in place of those of the file.
         points : mapping, optional
-            Numbers of nodes as text by the names of the points, ``{"tip": "7"}``; all nodes by their numbers if left
-            out.
+            Numbers of nodes as text, or places of nodes [m], by the names of the points: ``{"tip": "7"}``,
+            ``{"tip": (0.1, 0.0, 0.02)}``; all nodes by their numbers if left out.
         name : str, optional
             Name in records.
         geometry : str or Path, optional
-            A universal file with the nodes, if they are not in the same file.
+            A universal file with the nodes, or the deck of a ``.op2``, if they are not in the same file.
         quantity : {"displacement"}, optional
             Confirms that shapes that the file calls velocities or accelerations have the scale of displacements.
         directions : {"global", "local"}, optional
             Directions of shapes at nodes with a displacement coordinate system of their own; needed there.
+        scale : float, optional
+            Length of the unit of the file [m] where it states none, 1e-3 for mm with N and s; without it such a file is
+            taken as SI, with a warning.
+        damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
+            Damping ratios [1] in place of those of the file; computed modes have none without it.
 
         Raises
         ------
         ValueError
-            If a line cannot be read, the scale is not known, or a point is not measured.
+            If a line or a record cannot be read, the scale is not known, or a point is not measured.
         OSError
             If the file cannot be read.
         """
         from .measured_modes import MeasuredModes
 
         words: dict[str, Any] = {"geometry": geometry, "quantity": quantity, "directions": directions}
-        return MeasuredModes.read(path, scaling, **words).body(points, name)
+        return MeasuredModes.read(path, scaling, scale=scale, damping=damping, **words).body(points, name)
 
     @classmethod
     def placed(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -10,6 +11,11 @@ import numpy as np
 
 from ...disk import opened
 from .deck_error import DeckError
+
+# Place between a number with an exponent and a negative number without a blank.
+TOUCHING = re.compile(r"(?:(?<=E[+-]\d\d)|(?<=E[+-]\d\d\d))(?=-)")
+# Beginning of a binary dataset: order of bytes, form of numbers, and counts of lines and of bytes.
+BINARY = re.compile(rb"(?m)^[ ]*-1[ ]*\r?\n[ ]*58b[ ]+\d+[ ]+\d+[ ]+(\d+)[ ]+(\d+)[^\n]*\n")
 
 
 @dataclass(frozen=True)
@@ -45,9 +51,14 @@ class Dataset:
             raise self.wrong(at, f"needs {least} whole numbers in a line, got {len(found)}")
         return found
 
+    def words(self, at: int) -> list[str]:
+        """Return the numbers of a line as text; negative ones may follow another number without a blank."""
+        text = self.lines[at].upper().replace("D", "E") if at < len(self.lines) else ""
+        return TOUCHING.sub(" ", text).split()
+
     def numbers(self, at: int, count: int) -> list[float]:
         """Return the numbers of a line."""
-        words = self.lines[at].upper().replace("D", "E").split() if at < len(self.lines) else []
+        words = self.words(at)
         try:
             found = list(map(float, words))
         except ValueError:
@@ -59,7 +70,7 @@ class Dataset:
 
 
 def datasets(path: str | os.PathLike[str]) -> Iterator[Dataset]:
-    """Return the datasets of a universal file in their order.
+    """Return the datasets of a universal file in their order, binary functions without their numbers.
 
     Parameters
     ----------
@@ -74,7 +85,7 @@ def datasets(path: str | os.PathLike[str]) -> Iterator[Dataset]:
         If the file cannot be read.
     """
     with opened(path) as file:
-        lines = file.read().decode("latin-1").replace("\r\n", "\n").split("\n")
+        lines = _without_binary(file.read()).decode("latin-1").replace("\r\n", "\n").split("\n")
     at = 0
     while at < len(lines):
         at += 1
@@ -89,3 +100,20 @@ def datasets(path: str | os.PathLike[str]) -> Iterator[Dataset]:
             yield Dataset(lines[at].strip(), at + 2, lines[at + 1 : end])
         # An end without a dataset before it would take the next beginning for its end.
         at = end + 1 if end > at else at
+
+
+def _without_binary(content: bytes) -> bytes:
+    """Return the content of a file without the numbers of binary functions, which may look like lines."""
+    kept, at = [], 0
+    for match in BINARY.finditer(content):
+        if match.start() < at:
+            continue
+        stop = match.end()
+        for _ in range(int(match[1])):
+            stop = content.find(b"\n", stop) + 1 or len(content)
+        kept.append(content[at:stop])
+        at = stop + int(match[2])
+        if at > len(content):
+            line = content.count(b"\n", 0, match.start()) + 2
+            raise DeckError(line, f"a binary function of {match[2].decode()} bytes begins here: the file is cut off")
+    return b"".join([*kept, content[at:]])

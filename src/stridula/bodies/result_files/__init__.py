@@ -1,0 +1,1 @@
+"""Modes computed by other programs, in their files of results."""
