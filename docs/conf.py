@@ -98,6 +98,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = f"stridula {version}"
 html_static_path = ["_static"]
 html_css_files = ["stridula.css", "demonstration/style.css"]
+html_js_files = ["films.js"]
 html_show_sourcelink = False
 html_copy_source = False
 html_theme_options = {

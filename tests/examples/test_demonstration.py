@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -146,3 +147,10 @@ def test_the_page_has_every_script_and_loads_nothing_from_elsewhere():
     assert "http" not in text
     assert text.count("</script>") == 1 + len(page.SCRIPTS)
     assert Path(page.FOLDER / "settings.json").read_text(encoding="utf-8") in text
+
+
+def test_every_file_that_the_first_page_plays_is_there():
+    text = (ROOT / "docs" / "index.rst").read_text(encoding="utf-8")
+    named = re.findall(r'(?:src|poster)="(_static/[^"]+)"', text)
+    assert any(name.endswith(".mp4") for name in named)
+    assert [name for name in named if not (ROOT / "docs" / name).exists()] == []
