@@ -49,6 +49,8 @@ class Instrument:
         Keys of the scenario with their values, from the values of both axes.
     moving : tuple of str
         Bodies whose motion is recorded.
+    at_bridge : bool
+        Whether the force of the first of them on its left support is recorded as well.
     part, longest, heard, loop : float
         Times [s]: runs are continued by the first until they are steady, up to the second; the third is analysed for a
         cycle; without one, a stretch of the fourth is repeated.
@@ -74,6 +76,7 @@ class Instrument:
     y: Axis
     changes: Callable[[float, float], Mapping[str, Any]]
     moving: tuple[str, ...]
+    at_bridge: bool
     part: float
     longest: float
     heard: float
@@ -135,6 +138,7 @@ GLASS = Instrument(
     Axis("Force of the finger", "N", (0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.6, 2.5)),
     glass_changes,
     ("glass",),
+    False,
     2.0,
     8.0,
     0.5,
@@ -154,6 +158,7 @@ VIOLIN = Instrument(
     Axis("Force of the bow", "N", (0.2, 0.5, 1.1, 2.0, 4.0, 8.0)),
     violin_changes,
     ("string",),
+    True,
     1.0,
     1.0,
     0.25,

@@ -112,7 +112,7 @@ def settled(instrument: Instrument, system: st.System) -> xr.Dataset:
     """Return the last part of a run, once its vibration changes no more or the longest time is over."""
     moving = [body for body in system.bodies if system.body_name(body) in instrument.moving]
     probes: list[Any] = [st.ModalMotion(body) for body in moving]
-    if instrument.name == "violin":
+    if instrument.at_bridge:
         probes.append(st.SupportForce(moving[0], "left"))
     run, lasted = None, 0.0
     while True:
