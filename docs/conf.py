@@ -29,6 +29,8 @@ sys.path[:0] = [str(SOURCES), str(HERE)]
 # several times the processor time.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import demonstration.page  # noqa: E402
+
 import stridula  # noqa: E402
 
 project = "stridula"
@@ -95,7 +97,8 @@ sphinx_gallery_conf = {
 html_theme = "pydata_sphinx_theme"
 html_title = f"stridula {version}"
 html_static_path = ["_static"]
-html_css_files = ["stridula.css"]
+html_css_files = ["stridula.css", "demonstration/style.css"]
+html_js_files = ["films.js"]
 html_show_sourcelink = False
 html_copy_source = False
 html_theme_options = {
@@ -564,6 +567,7 @@ def setup(app: Sphinx) -> None:
     write(GENERATED / "equilibrium.rst", equilibrium_table())
     write_pages(GENERATED / "keys", scenario_pages())
     write(GENERATED / "shipped.rst", shipped_table())
+    write(GENERATED / "demonstration.html", demonstration.page.html())
     check_measures()
     copy_examples()
     reproduce_paper()

@@ -22,6 +22,8 @@ lining = st.FrictionOverTemperature.read(HERE / "lining.csv", ("speed [m/s]", "c
 plot.save(plot.friction(lining, np.linspace(0.0, 6.0, 200)), "lining.png")
 
 UNIT, SPEED, LOAD = 4.4e6, 3.0, 2000.0
+# Pressure of a plane wave over the velocity of the air [Pa s/m].
+WAVE = 413.0
 pad = st.PointMass(1.0, name="pad")
 
 
@@ -73,3 +75,9 @@ figure.savefig("stop.png")
 for begin, end in ((0.0, 0.1), (0.5, 0.6), (1.5, 1.6), (3.9, 4.0)):
     part = run.sel(time=slice(begin, end))
     print(f"{begin} to {end} s, {float(part.temperature.mean()):.0f} degC: {st.regime(part).regime.item()}")
+
+# %%
+# The squeal comes and goes with the temperature: the sound before the pad, as of a plane wave from its end.
+
+pressure = (WAVE * (run.slip_velocity - run.slip_velocity.mean("time"))).assign_attrs(units="Pa")
+st.listen(pressure)
