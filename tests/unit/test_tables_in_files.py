@@ -71,7 +71,7 @@ def test_tables_are_those_of_the_files(scenario):
 
 def test_a_record_has_the_tables_and_runs_without_the_files(scenario, tmp_path):
     run = scenario().simulate()
-    for name in ("lining.csv", "rail.csv", "stop.txt"):
+    for name in ("lining.csv", "rail.csv", "stop.txt", "damper.csv"):
         (tmp_path / name).unlink()
     again = st.load_scenario(run).simulate()
     np.testing.assert_array_equal(again["tangential_force"], run["tangential_force"])

@@ -135,7 +135,8 @@ def _general(system: System, probed: Sequence[BodyPoint]) -> dict[str, Any]:
 
 def _unmoved(connection: Connection) -> tuple[str, ...]:
     """Return the fields of a connection to leave out: its history, written separately, and others without effect."""
-    return ("history",) if connection.moved_by else ("history", "offset", "velocity")
+    # Only linear ones have an offset or a velocity that a history moves: others have it in their table.
+    return ("history",) if connection.moved_by or connection.bend is not None else ("history", "offset", "velocity")
 
 
 def _contact(contact: PointContact) -> dict[str, Any]:
