@@ -119,7 +119,9 @@ def pixels(page, canvas: str, colour: str) -> int:
           const canvas = document.getElementById(id);
           const hex = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim().slice(1);
           const wanted = [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16));
-          const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+          const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", { willReadFrequently: true });
+          copy.drawImage(canvas, 0, 0);
+          const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
           let found = 0;
           for (let i = 0; i < data.length; i += 4) {
             found += data[i + 3] > 128 && wanted.every((one, k) => Math.abs(one - data[i + k]) < 40);

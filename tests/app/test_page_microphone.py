@@ -8,6 +8,7 @@ import soundfile
 
 from .browsing import Browsing, launched, pixels, until
 from .conversation import RATE
+from .serving import START
 
 TEXT = "document.getElementById('{}').textContent"
 TONE = 784.0
@@ -42,6 +43,8 @@ def test_a_tone_is_named_beside_the_computed_one_and_the_glass_is_fitted_to_it(h
         page.wait_for_timeout(500)
         assert pixels(page, "spectrogram", "mine") > 100
         until(page, f"{TEXT.format('ours-pitch')}.includes('F5')")
+        # Several systems are computed and marched.
+        page.set_default_timeout(1000.0 * START)
         page.locator("#fit").click()
         until(page, f"{TEXT.format('fit-words')}.includes('sings at')")
         until(page, "Object.keys(stridula.scene.now.overrides).some((key) => key.includes('thickness'))")
