@@ -110,3 +110,23 @@ def pause(page: Any) -> None:
 def shown(page: Any, key: str) -> float:
     """Return the number that the page shows for a key, in the unit shown."""
     return float(page.locator(f"input[type=number][data-key='{key}']").input_value())
+
+
+def pixels(page, canvas: str, colour: str) -> int:
+    """Return the number of pixels of a canvas near the colour of a name."""
+    return page.evaluate(
+        """([id, name]) => {
+          const canvas = document.getElementById(id);
+          const hex = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim().slice(1);
+          const wanted = [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16));
+          const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", { willReadFrequently: true });
+          copy.drawImage(canvas, 0, 0);
+          const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+          let found = 0;
+          for (let i = 0; i < data.length; i += 4) {
+            found += data[i + 3] > 128 && wanted.every((one, k) => Math.abs(one - data[i + k]) < 40);
+          }
+          return found;
+        }""",
+        [canvas, colour],
+    )

@@ -13,6 +13,7 @@ from typing import Any
 
 from starlette.websockets import WebSocketDisconnect
 
+from stridula.app.challenges import CHALLENGES
 from stridula.app.controls import CHOICES, CONTROLS, Control, values
 from stridula.app.messages import LARGEST
 from stridula.app.playable import PRESETS, playable
@@ -177,7 +178,7 @@ def _sent(dice: random.Random) -> str | bytes:
 def _right(dice: random.Random) -> dict[str, Any]:
     """Return a message that may be played."""
     type = dice.choice(
-        (*["scene"] * 3, *["pull"] * 2, "listen", "restart", "repeat", "save", "map", "no map", "hold map")
+        (*["scene"] * 3, *["pull"] * 2, "listen", "restart", "repeat", "save", "map", "no map", "hold map", "challenge")
     )
     words: dict[str, Any] = {"type": type}
     if type == "scene":
@@ -193,6 +194,8 @@ def _right(dice: random.Random) -> dict[str, Any]:
         words["source"] = dice.choice(("pressure", "force", "acceleration"))
     elif type in ("repeat", "hold map"):
         words["on"] = dice.random() < 0.5
+    elif type == "challenge":
+        words["name"] = dice.choice((*CHALLENGES, None, "nonsense"))
     elif type == "save":
         words["format"] = dice.choice(("wav", "nc"))
     elif type == "map":

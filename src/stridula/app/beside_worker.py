@@ -74,7 +74,14 @@ def now(**words: Any) -> dict[str, Any]:
     return measured(**words)
 
 
-ANSWERS: dict[str, Callable[..., Any]] = {"regimes": regimes, "theory": theory, "now": now}
+def fit(**words: Any) -> dict[str, Any]:
+    """Return the wall of a glass of another pitch; arguments and result are those of `fitted`."""
+    from .fit import fitted
+
+    return fitted(**words)
+
+
+ANSWERS: dict[str, Callable[..., Any]] = {"regimes": regimes, "theory": theory, "now": now, "fit": fit}
 
 
 def main() -> None:

@@ -100,7 +100,22 @@ class HoldMap(_Message):
     on: bool
 
 
-Message = Scene | Pull | Listen | Restart | Repeat | Save | Map | NoMap | HoldMap
+class Take(_Message):
+    """Challenge to judge from now on, None for none."""
+
+    type: Literal["challenge"]
+    name: Annotated[str, Field(max_length=40)] | None
+
+
+class Fit(_Message):
+    """Request for the wall of a glass that sings at a frequency [Hz]."""
+
+    type: Literal["fit"]
+    revision: Revision
+    frequency: Annotated[float, Field(gt=0.0, le=20_000.0, allow_inf_nan=False)]
+
+
+Message = Scene | Pull | Listen | Restart | Repeat | Save | Map | NoMap | HoldMap | Take | Fit
 _ADAPTER: TypeAdapter[Any] = TypeAdapter(Annotated[Message, Field(discriminator="type")])
 
 

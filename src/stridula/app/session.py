@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from ..arrays import Array
-from ..checks import ArgumentError
+from ..checks import ArgumentError, choice
 from ..long_tasks import GivenUp, until
 from ..plot.colours import REGIME_COLOURS
 from ..records.by_surface import groups
@@ -22,11 +22,13 @@ from ..version import __version__
 from . import controls, now
 from .beside import Beside
 from .bounds import bounds_of
+from .challenges import CHALLENGES, Judge
+from .fit import walls_of
 from .held import held, is_of_one_case
 from .instrument import RATE, Instrument
 from .last_seconds import KEPT
 from .maps import rows
-from .messages import HoldMap, Listen, Map, Message, NoMap, Pull, Repeat, Restart, Save, Scene, message_of
+from .messages import Fit, HoldMap, Listen, Map, Message, NoMap, Pull, Repeat, Restart, Save, Scene, Take, message_of
 from .parts import THINNED, Stop, packed
 from .playable import Playable
 from .presets import presets
@@ -52,6 +54,8 @@ SHORTEST = 0.2
 # Weight of earlier measurements in the speed of playing, as a machine may be busy at times; number of samples needed
 # for a new measurement.
 KNOWN, ENOUGH = 0.6, 48
+# Greatest distance of a motion from its mode, relative to the mode.
+NEAR = 0.03
 # A page that has not sent a first message is disconnected after this time [s].
 HURRY = 10.0
 # Interval at which a page that waits is looked after [s].
@@ -93,6 +97,10 @@ class Session:
         self._taken, self._made = 0.0, 0
         # Held while the scenario changes and while parts are played.
         self._changing = asyncio.Lock()
+        # Frequency of the squeal named last [Hz], and its revision.
+        self._sings: tuple[float | None, int] = None, -1
+        # Judge of a challenge, if the page has taken one.
+        self.judge: Judge | None = None
         # Revision since which the keys of a map are those that are played, and whether its next row may begin.
         self._keyed, self._maps = 0, asyncio.Event()
 
@@ -133,6 +141,7 @@ class Session:
             kept=KEPT,
             presets=presets(),
             tour=[asdict(stop) for stop in STOPS],
+            challenges=[one.described for one in CHALLENGES.values()],
             regimes=REGIME_COLOURS,
             **controls.turned_of_pair({}).described,
         )
@@ -194,6 +203,13 @@ class Session:
         self.repeats = message.on
         if self.instrument is not None:
             self.instrument.repeat(message.on)
+
+    async def _take(self, message: Take) -> None:
+        if message.name is None:
+            self.judge = None
+            return
+        choice("name", message.name, tuple(CHALLENGES))
+        self.judge = Judge(CHALLENGES[message.name])
 
     async def _scene(self, scene: Scene) -> None:
         """Play another scene, or its playable part; the present one sounds until it is ready."""
@@ -319,18 +335,23 @@ class Session:
                     before, revision = instrument.played_samples, instrument.revision
                     last = instrument.last_seconds
                     variables, pressure = last.moment(headline.seconds(last.steady))
-                    system = instrument.played.system
+                    clock, played, scene = instrument.played_samples / RATE, instrument.played, self.scene
                 seconds = len(variables["damping_loss"]) / RATE if variables else 0.0
                 if seconds < SHORTEST or not headline.takes(seconds, revision):
                     continue
                 told = await asyncio.to_thread(_all_said, variables)
+                system = played.system
                 members = groups(system.contact_names, system.surface_names)
                 names = [system.contact_names[those[0]] for those in members]
                 found = await self.beside.ask("now", interval=1.0 / RATE, contacts=names, variables=told)
                 if found is not None:
                     named = headline.after(found, revision)
                     words = now.words(named, now.level_of(pressure[-round(now.MOMENT * RATE) :]))
-                    await self._tell("now", revision=revision, words=words, **named)
+                    self._sings = named["frequency"] if named["regime"] == "squeal" else None, revision
+                    verdict = None
+                    if self.judge is not None and scene is not None:
+                        verdict = self.judge.after(named, scene, played, clock, revision)
+                    await self._tell("now", revision=revision, words=words, verdict=verdict, **named)
 
     async def _pull(self, instrument: Instrument, pull: Pull) -> None:
         """Play the next parts; a page that requests more than real time must wait."""
@@ -423,6 +444,27 @@ class Session:
             with suppress(WebSocketDisconnect):
                 await self._tell("theory", revision=revision, **found)
 
+    async def _fit(self, instrument: Instrument, message: Fit) -> None:
+        # The page has another setting by now.
+        if message.revision != instrument.revision:
+            return
+        if not walls_of(instrument.played.tables):
+            raise ArgumentError("fit", "be of a system with the wall of a glass", got=instrument.played.scenario.title)
+        self._do("fit", self._fitted(instrument.played, message))
+
+    async def _fitted(self, played: Playable, message: Fit) -> None:
+        found = await self.beside.ask("theory", tables=played.tables)
+        sung, revision = self._sings
+        modes = found["modes"] if found is not None else []
+        # The motion is a little above linear theory, unless it is that of another mode.
+        is_known = bool(modes) and sung is not None and revision == message.revision
+        above = sung / modes[0]["frequency"] if is_known and sung is not None else 1.0
+        above = above if abs(above - 1.0) < NEAR else 1.0
+        fitting = await self.beside.ask("fit", tables=played.tables, frequency=message.frequency, above=above)
+        if fitting is not None:
+            with suppress(WebSocketDisconnect):
+                await self._tell("fit", revision=message.revision, **fitting)
+
     def _do(self, name: str, what: Coroutine[Any, Any, None]) -> None:
         """Start a background task, in place of the previous one with this name."""
         self._stop(name)
@@ -435,7 +477,12 @@ class Session:
 
 
 # Methods that answer messages, without and with an instrument.
-ANSWERS: dict[type, Any] = {Scene: Session._scene, Listen: Session._listen, Repeat: Session._repeat}
+ANSWERS: dict[type, Any] = {
+    Scene: Session._scene,
+    Listen: Session._listen,
+    Repeat: Session._repeat,
+    Take: Session._take,
+}
 ANSWERS_OF_WHAT_PLAYS: dict[type, Any] = {
     Pull: Session._pull,
     Restart: Session._restart,
@@ -443,6 +490,7 @@ ANSWERS_OF_WHAT_PLAYS: dict[type, Any] = {
     NoMap: Session._no_map,
     HoldMap: Session._hold_map,
     Map: Session._map,
+    Fit: Session._fit,
 }
 
 
@@ -515,6 +563,7 @@ def _described(instrument: Instrument, speed: float | None) -> dict[str, Any]:
         "steps": live.ratio,
         "longer": instrument.longer is not None,
         "speed": speed,
+        "fits": bool(walls_of(played.tables)),
     }
 
 

@@ -1,11 +1,13 @@
 // The page: shows messages of the server, and sends it the actions of the user.
 import { short } from "./axes.js";
 import { Bow } from "./bow.js";
+import { Challenges } from "./challenges.js";
 import { Controls } from "./controls.js";
 import { Gallery } from "./gallery.js";
 import { RegimeMap } from "./map.js";
 import { levelWords } from "./level.js";
 import { Loop } from "./loop.js";
+import { Mine } from "./mine.js";
 import { parts } from "./parts.js";
 import { reading } from "./note.js";
 import { Pictures } from "./pictures.js";
@@ -22,7 +24,8 @@ const say = (message) => stream.postMessage({ say: message });
 const space = new Space({ canvas: $("space"), legend: $("space-legend"), low: $("space-low"), high: $("space-high"), missing: $("space-missing") });
 const pictures = new Pictures(space);
 const scene = new Scene(changed, () => bow?.release());
-const slots = new Slots(scene);
+const slots = new Slots(scene, hold);
+const mine = new Mine({ pictures, say: (message) => say({ ...message, revision }), scene, show: () => showSpectrum(true) });
 const sound = new Sound(stream, heard);
 const loop = new Loop(showLoop);
 const recorder = new Recorder(48000);
@@ -41,7 +44,7 @@ const COMPILING = "Compiling the simulation for this machine, once, which takes 
 const LONGEST = 60000; // Largest scenario accepted from the user [bytes].
 const LONG = 5; // Time of drawing above which every other frame is skipped [ms].
 const stats = { drawing: 0, revision: 0, played: 0, samples: 0, frames: 0, fps: 0, dropouts: 0, latency: null, latencies: [], connected: false, level: 0, peak: 0 };
-let hello, controls, map, bow, gallery, described, sources;
+let hello, controls, map, bow, gallery, challenges, tour, described, sources;
 let turned = "null"; // The controls shown, if not those of two beams.
 let played = null; // Seconds played per second, null for two beams, which any machine plays in real time.
 let slowest = 1; // Seconds needed to play one second, 1 if it keeps up with the sound.
@@ -72,8 +75,13 @@ function told(message) {
     },
     stroke: () => stroke(message),
     theory: () => theory(message),
-    now: () => message.revision >= begun && goesOn(message),
+    now: () => {
+      if (message.revision >= begun) goesOn(message);
+      // A verdict on an earlier setting came too late.
+      if (message.revision === revision) challenges.judge(message.verdict);
+    },
     speed: () => follow(message.speed),
+    fit: () => message.revision === revision && mine.took(message),
     "map row": () => map?.take(message),
     "map done": () => map?.done(message),
   };
@@ -92,12 +100,14 @@ async function welcome(message) {
     gallery = new Gallery(hello.presets, choose);
     controls = new Controls($("controls"), hello, scene);
     bow = new Bow($("beams"), scene, controls, (words) => write("hand", words));
-    new Tour(hello.tour, scene, slots);
+    tour = new Tour(hello.tour, scene, slots);
+    challenges = new Challenges(hello.challenges, { scene, say, copied: copyLink, problem, note });
     map = new RegimeMap(scene, controls, hello.regimes, say);
     await readLink();
+    challenges.read(scene.challenge, scene.hasSetting);
     // Undo does not go back to before the link.
     scene.past = [];
-  }
+  } else challenges.again();
   if (sources) listenTo();
   say({ type: "repeat", on: $("repeat").checked });
   map.again();
@@ -106,6 +116,7 @@ async function welcome(message) {
 
 function send() {
   map.leave();
+  mine.forget();
   revision += 1;
   moves.set(revision, performance.now());
   if (moves.size > 200) moves.delete(moves.keys().next().value);
@@ -127,6 +138,7 @@ function answered(number) {
 }
 
 function changed() {
+  challenges?.changed();
   note();
   send();
 }
@@ -168,6 +180,7 @@ function shown(message) {
   else keepUp(message.speed);
   putBack(message);
   pictures.describe(message);
+  mine.follow(message.fits, message.goes_on);
   map.follow(message.revision);
   bow.follow();
   showCase(message);
@@ -199,6 +212,7 @@ function offer({ sources: offered, source }) {
 function goesOn({ words, regime, frequency }) {
   const isTone = ["squeal", "stick-slip"].includes(regime) && frequency >= LOWEST;
   const { note, mode } = reading(isTone ? frequency : null, pictures.modes);
+  mine.computed(isTone ? frequency : null);
   write("now", words);
   write("note", note);
   write("mode", mode);
@@ -272,6 +286,7 @@ function putBack({ revision: number, refused, kept }) {
   const asked = sent.get(number);
   for (const one of [...sent.keys()]) if (one <= number) sent.delete(one);
   const others = controls.refuse(refused);
+  if (Object.keys(refused).length) challenges.refused();
   if (others.length) problem([...new Set(others.flatMap((key) => refused[key]))]);
   if (!kept || !asked) return;
   scene.putBack(asked, refused, kept);
@@ -380,9 +395,25 @@ function showSource() {
   const source = sources[name];
   stream.postMessage({ heard: { name, scale: 1 / source.full_scale, unit: source.unit } });
   loop.forget();
+  pictures.source = name;
+  pictures.spectra.clear();
   pictures.spectrogram.clear();
   $("spectrogram-words").textContent = `of the ${source.name.toLowerCase()}`;
   listen();
+}
+
+// Hold the pictures of the setting that stops; with null, none.
+function hold(name) {
+  pictures.held = name === null ? null : pictures.hold(name, $("source").value);
+  pictures.playing = name === "A" ? "B" : "A";
+  pictures.spectra.clear();
+  $("said").textContent = pictures.held ? `Setting ${name} stays in the pictures of force and spectrum as a thin line` : "";
+}
+
+function showSpectrum(on) {
+  $("as-spectrum").checked = pictures.asSpectrum = on;
+  write("heard-title", on ? "Spectrum" : "Spectrogram");
+  $("spectrogram").setAttribute("aria-label", on ? "Spectrum of the sound of the last moments, from 50 hertz to 12 kilohertz" : "Spectrogram of the sound, up to 12 kilohertz");
 }
 
 function listen() {
@@ -518,10 +549,7 @@ function choose(name) {
 $("case").addEventListener("change", () => choose($("case").value));
 $("undo").addEventListener("click", () => scene.undo());
 $("redo").addEventListener("click", () => scene.redo());
-$("link").addEventListener("click", async () => {
-  history.replaceState(null, "", await scene.link());
-  await copied(location.href, "link");
-});
+$("link").addEventListener("click", copyLink);
 $("share").hidden = !navigator.share;
 $("share").addEventListener("click", async () => {
   history.replaceState(null, "", await scene.link());
@@ -566,6 +594,7 @@ $("loop").addEventListener("click", () => {
   else write("loop-words", "The sound computed so far is too short to play.");
 });
 $("source").addEventListener("change", listenTo);
+$("as-spectrum").addEventListener("change", () => showSpectrum($("as-spectrum").checked));
 $("volume").addEventListener("input", listen);
 $("levelled").addEventListener("change", listen);
 $("save-wav").addEventListener("click", () => say({ type: "save", format: "wav" }));
@@ -583,6 +612,7 @@ $("toml-open").addEventListener("change", async () => {
 });
 window.addEventListener("hashchange", async () => {
   if (await readLink()) changed();
+  challenges.read(scene.challenge, scene.hasSetting);
 });
 document.addEventListener("keydown", (event) => {
   const writing = event.target.matches("textarea, input[type=number], input[type=text]");
@@ -599,8 +629,15 @@ document.addEventListener("keydown", (event) => {
   }
 });
 document.addEventListener("visibilitychange", pace);
+// The tour and a challenge take the place of each other.
+document.addEventListener("guided", ({ detail }) => (detail === "tour" ? challenges : tour).leave());
 $("begin").addEventListener("click", () => sound.on || $("sound").click());
 $("intro").addEventListener("close", () => localStorage.setItem("visited", "1"));
+
+async function copyLink() {
+  history.replaceState(null, "", await scene.link());
+  await copied(location.href, "link");
+}
 
 async function copied(text, what) {
   try {

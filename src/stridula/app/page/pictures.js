@@ -3,6 +3,7 @@ import { rounded, short } from "./axes.js";
 import { History } from "./history.js";
 import { drawLines, Frame, placed } from "./lines.js";
 import { Phase } from "./phase.js";
+import { Spectra } from "./spectra.js";
 import { Spectrogram } from "./spectrogram.js";
 import { path, Timeline, WINDOW } from "./timeline.js";
 
@@ -24,6 +25,10 @@ export class Pictures {
     this.timeline = new Timeline();
     this.phase = new Phase();
     this.spectrogram = new Spectrogram();
+    this.spectra = new Spectra();
+    this.asSpectrum = false; // Whether the sound is shown as a spectrum.
+    this.held = null; // Pictures of the other setting.
+    this.mine = null; // Spectrum of the microphone.
     this.modes = [];
     this.slow = 1;
     this.drawnSince = 0;
@@ -34,7 +39,7 @@ export class Pictures {
   theme() {
     const style = getComputedStyle(document.documentElement);
     const colour = (name) => style.getPropertyValue(`--${name}`).trim();
-    this.colours = Object.fromEntries(["ink", "soft", "line", "panel", "trace", "mark", ...STATES].map((name) => [name, colour(name)]));
+    this.colours = Object.fromEntries(["ink", "soft", "line", "panel", "trace", "mark", "held", "mine", ...STATES].map((name) => [name, colour(name)]));
     this.dark = document.documentElement.dataset.theme === "dark";
     this.spectrogram.repaint();
   }
@@ -68,7 +73,15 @@ export class Pictures {
   // Clear the pictures for a new motion.
   clear() {
     this.modes = [];
+    this.spectra.clear();
     this.spectrogram.clear();
+  }
+
+  // Pictures of the setting that plays, to be held while the other one does, null if there is nothing yet.
+  hold(name, source) {
+    const points = this.history.since(WINDOW);
+    if (!points.length) return null;
+    return { name, source, power: this.spectra.now(), force: points.map((k) => [this.history.time[k] - this.history.clock, this.history.force[k]]) };
   }
 
   pace(slow) {
@@ -90,11 +103,22 @@ export class Pictures {
     else if (this.scene.lines) this.#lines();
     else if (this.shapes.track.length) this.#beams();
     this.turn = !this.turn;
-    if (this.turn) this.timeline.draw(this.#begin("timeline"), this.history, this.slow, this.colours, STATES);
+    if (this.turn) this.timeline.draw(this.#begin("timeline"), this.history, this.slow, this.colours, STATES, this.held);
     else {
       this.phase.draw(this.#begin("phase"), this.history, this.slow, this.colours, STATES, this.dark);
-      this.spectrogram.draw(this.#begin("spectrogram"), this.modes, this.colours, this.dark);
+      if (this.asSpectrum) this.spectra.draw(this.#begin("spectrogram"), this.#curves(), this.modes, this.colours);
+      else this.spectrogram.draw(this.#begin("spectrogram"), this.modes, this.colours, this.dark);
     }
+  }
+
+  // The curves of the spectrum: names, and those beside the playing one.
+  #curves() {
+    const others = [];
+    const { held, mine, colours } = this;
+    // Levels of another source would say nothing.
+    if (held?.power && held.source === this.source) others.push({ name: `${held.name}, held`, power: held.power, rate: RATE, colour: colours.held, wide: 1, dashed: true, isSame: true });
+    if (mine) others.push({ name: "microphone", power: mine.power, rate: mine.rate, colour: colours.mine, wide: 1.4 });
+    return { name: held ? `${this.playing}, playing` : "computed", others };
   }
 
   #begin(name) {
@@ -184,6 +208,7 @@ export class Pictures {
   // Update the spectrogram and the level.
   #hear(sound) {
     this.spectrogram.hear(sound);
+    this.spectra.hear(sound);
     let [sum, mean] = [0, 0];
     for (const value of sound) mean += value / sound.length;
     for (const value of sound) sum += (value - mean) ** 2;

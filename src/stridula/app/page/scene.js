@@ -9,6 +9,7 @@ export class Scene {
     this.now = { case: FIRST, text: null, overrides: {} };
     this.past = [];
     this.future = [];
+    this.challenge = null; // Name of the challenge that a link has, too.
     this.places = {}; // Keys for which a key with a * stands.
   }
 
@@ -105,17 +106,21 @@ export class Scene {
     if (this.now.text === null) words.set("case", this.now.case);
     else words.set("text", await packed(this.now.text));
     for (const [key, value] of Object.entries(this.now.overrides)) words.set(key, value);
+    if (this.challenge) words.set("challenge", this.challenge);
     return `#${words}`;
   }
 
   // Read a link; values that it lacks are those of the case.
   async read(hash) {
     const words = new URLSearchParams(hash.replace(/^#/, ""));
-    if (![...words].length) return false;
+    this.challenge = words.get("challenge");
+    // A challenge alone begins with its case.
+    this.hasSetting = [...words.keys()].some((key) => key !== "challenge");
+    if (!this.hasSetting) return false;
     const next = { case: words.get("case") ?? (words.has("text") ? "" : "squeal"), text: null, overrides: {} };
     if (words.has("text")) next.text = await unpacked(words.get("text"));
     for (const [key, value] of words) {
-      if (key === "case" || key === "text") continue;
+      if (["case", "text", "challenge"].includes(key)) continue;
       const number = Number(value);
       next.overrides[key] = value.trim() !== "" && Number.isFinite(number) ? number : value;
     }

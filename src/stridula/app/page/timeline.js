@@ -1,5 +1,6 @@
 // Normal force over time, and below it the state of the contact.
 import { Layer, paintAxes, roof } from "./axes.js";
+import { legend } from "./spectra.js";
 
 export const WINDOW = 1.0; // Time shown live [s].
 const FALL = 400; // Time in which an axis shrinks [ms].
@@ -25,13 +26,16 @@ export class Timeline {
     this.axes = new Layer();
   }
 
-  draw([draw, width, height], history, slow, colours, states) {
+  // The force of the other setting, if it is held, ends at the same place as that of the playing one.
+  draw([draw, width, height], history, slow, colours, states, held = null) {
     const span = WINDOW / slow;
     const points = history.since(span);
     const lanes = states.length * LANE + 4;
     const [inner, tall] = [width - LEFT - RIGHT, height - ABOVE - BELOW - lanes];
     let largest = 1e-9;
     for (const k of points) largest = Math.max(largest, history.force[k]);
+    const reference = held ? held.force.filter(([time]) => time >= -span) : [];
+    for (const [, force] of reference) largest = Math.max(largest, force);
     const top = roof(this.top.follow(largest, performance.now()));
     this.axes.draw(draw, width, height, [top, span, colours.line], (paint) => this.#axes(paint, { inner, tall, lanes, top, span }, colours, states));
     const start = history.clock - span;
@@ -43,6 +47,11 @@ export class Timeline {
     if (points.length < inner) path(draw, points.map((k) => [x(k), y(history.force[k])]));
     else envelope(draw, columns, y);
     states.forEach((name, state) => ribbon(draw, columns, 1 << state, ABOVE + tall + 5 + LANE * state, colours[name]));
+    if (!reference.length) return;
+    draw.strokeStyle = colours.held;
+    draw.lineWidth = 1;
+    path(draw, thinned(reference.map(([time, force]) => [LEFT + (1 + time / span) * inner, y(force)])));
+    legend(draw, [{ name: `${held.name}, held`, colour: colours.held, wide: 1, dashed: false }], { left: LEFT, top: ABOVE, width: inner }, colours, 1);
   }
 
   #axes(draw, { inner, tall, lanes, top, span }, colours, states) {
@@ -68,6 +77,17 @@ function columnsOf(points, history, x) {
     columns.set(column, one);
   }
   return columns;
+}
+
+// The lowest and the highest point of each column.
+export function thinned(points) {
+  const columns = new Map();
+  for (const point of points) {
+    const column = Math.floor(point[0]);
+    const one = columns.get(column) ?? [point, point];
+    columns.set(column, [point[1] < one[0][1] ? point : one[0], point[1] > one[1][1] ? point : one[1]]);
+  }
+  return [...columns.values()].flatMap((both) => (both[0] === both[1] ? [both[0]] : both.sort((one, other) => one[0] - other[0])));
 }
 
 function envelope(draw, columns, y) {

@@ -12,6 +12,7 @@ export class Tour {
   }
 
   go(at) {
+    document.dispatchEvent(new CustomEvent("guided", { detail: "tour" }));
     this.at = at;
     const { title, words, look, case: name, overrides, compared } = this.stops[at];
     this.panel.hidden = false;
@@ -29,6 +30,7 @@ export class Tour {
 
   // The scene is kept.
   leave() {
+    if (this.panel.hidden) return;
     this.panel.hidden = true;
     this.#mark(null);
     document.getElementById("tour-begin").focus();
