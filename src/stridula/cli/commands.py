@@ -294,6 +294,10 @@ def survey(
     kicks: Annotated[
         int, typer.Option(metavar="N", min=0, help="Decaying modes that are kicked where no mode grows.")
     ] = 1,
+    by: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY", help="Differentiate the growing modes by a parameter; may be repeated."),
+    ] = None,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw a map of squeal over two keys.")] = None,
     table: Annotated[
         str | None, typer.Option(metavar="FILE.csv", help="Write a row for each mode of each point.")
@@ -326,6 +330,7 @@ def survey(
         velocity=velocities(velocity),
         cycles=cycles,
         kicks=kicks,
+        by=by or [],
         workers=workers,
     )
     print(lines)
