@@ -465,6 +465,9 @@ def report_(
     sound: Annotated[bool, typer.Option(help="Compute its sound.")] = True,
     effects: Annotated[bool, typer.Option(help="Compute effects of parameters.")] = True,
     check: Annotated[bool, typer.Option(help="Check step and cutoffs.")] = True,
+    fates: Annotated[
+        bool, typer.Option("--fates", help="Follow each growing mode in time to its regime, pitch and level.")
+    ] = False,
 ) -> None:
     """Write a page on a system, or on two designs: modes, run, sound, and what helps."""
     with _importing():
@@ -486,6 +489,7 @@ def report_(
             sound=sound,
             effects=effects,
             check=check,
+            fates=fates,
         )
     )
 
