@@ -35,8 +35,8 @@ def with_mass(mass: float, place: str = "entry", friction: float = FRICTION) -> 
 # Where a mass helps
 # ------------------
 #
-# Growth of the fastest mode over the mass. In the middle of the pad each mass makes it worse; at the entry a larger mass
-# than needed lets another mode grow, at 6.4 kHz.
+# Growth of the fastest mode over the mass. In the middle of the pad each mass makes it worse; at the entry a larger
+# mass than needed lets another mode grow, at 6.4 kHz.
 
 masses = np.array([0.0, 0.03, 0.06, 0.09, LARGEST])
 growth = {
