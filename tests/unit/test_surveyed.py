@@ -169,3 +169,19 @@ def test_bad_options_are_one_line(stridula, tmp_path, words, message):
     assert message in error
     assert error.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_command_line_prints_derivatives(stridula, tmp_path):
+    words = ("survey", "weak-pressure", "--vary", "friction=0.9,1.2", "--duration", "1 ms", "--no-cycles")
+    code, out, _ = stridula(*words, "--by", "friction", "-o", "found.nc", "--table", "found.csv")
+    assert code == 0
+    found = st.load("found.nc")
+    assert "d growth by" in out
+    for number in found["mode"].values:
+        slopes = found.d_growth_rate.sel(mode=number, parameter="friction").values
+        low, high = (format(pick(slopes), ".4g") for pick in (np.nanmin, np.nanmax))
+        assert (low if low == high else f"{low} to {high}") in out
+    rows = list(csv.DictReader((tmp_path / "found.csv").read_text().splitlines()))
+    assert float(rows[0]["d_growth_rate by friction"]) == np.nanmin(found.d_growth_rate.values[0])
+    assert stridula(*words, "--by", "none", "-o", "other.nc")[0] == 2
+    assert not (tmp_path / "other.nc").exists()

@@ -277,7 +277,7 @@ def test_the_command_refuses_in_one_line_and_writes_nothing(stridula, tmp_path, 
 
 
 def test_a_stiffness_of_surfaces_is_one_of_an_area():
-    options = Options({}, None, "friction", None, "", False, False, False, False, None, None, 1, None, None)
+    options = Options({}, None, "friction", None, "", False, False, False, False, False, None, None, 1, None, None)
     (facts,) = inputs_section(design_of("brake", options), Pictures()).blocks
     assert facts.facts["surfaces.0.stiffness.stiffness"].endswith(("N/m3", "GPa/m", "N/mm3"))
     assert facts.facts["surfaces.0.stiffness.damping"].endswith("N s/m3")

@@ -294,6 +294,10 @@ def survey(
     kicks: Annotated[
         int, typer.Option(metavar="N", min=0, help="Decaying modes that are kicked where no mode grows.")
     ] = 1,
+    by: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY", help="Differentiate the growing modes by a parameter; may be repeated."),
+    ] = None,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw a map of squeal over two keys.")] = None,
     table: Annotated[
         str | None, typer.Option(metavar="FILE.csv", help="Write a row for each mode of each point.")
@@ -326,6 +330,7 @@ def survey(
         velocity=velocities(velocity),
         cycles=cycles,
         kicks=kicks,
+        by=by or [],
         workers=workers,
     )
     print(lines)
@@ -460,6 +465,9 @@ def report_(
     sound: Annotated[bool, typer.Option(help="Compute its sound.")] = True,
     effects: Annotated[bool, typer.Option(help="Compute effects of parameters.")] = True,
     check: Annotated[bool, typer.Option(help="Check step and cutoffs.")] = True,
+    fates: Annotated[
+        bool, typer.Option("--fates", help="Follow each growing mode in time to its regime, pitch and level.")
+    ] = False,
 ) -> None:
     """Write a page on a system, or on two designs: modes, run, sound, and what helps."""
     with _importing():
@@ -481,6 +489,7 @@ def report_(
             sound=sound,
             effects=effects,
             check=check,
+            fates=fates,
         )
     )
 

@@ -87,7 +87,8 @@ def _modes(found: xr.Dataset, title: str) -> Table:
     """Return a table of the modes that grow at any point, by increasing frequency, with their most frequent fates."""
     table = Table(title=escape(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
     heads = ("mode", "frequency [Hz]", "growth [1/s]", "in time [1/s]", "first unstable at")
-    for head in (*heads, "becomes", "points", "tone [Hz]", "force [N rms]", "sound [dB(A)]"):
+    slopes = _slopes(found)
+    for head in (*heads, *slopes, "becomes", "points", "tone [Hz]", "force [N rms]", "sound [dB(A)]"):
         table.add_column(escape(head), justify="left" if head in (heads[-1], "becomes") else "right", overflow="fold")
     flat = found.stack(at=found["verdict"].dims)
     for number in found["mode"].values.tolist():
@@ -95,10 +96,23 @@ def _modes(found: xr.Dataset, title: str) -> Table:
         there = np.flatnonzero(np.isfinite(one["frequency"].values))
         rates = [_span(one[word].values[there], NUMBER) for word in ("frequency", "growth_rate", "seen_growth_rate")]
         first = [str(number), *rates, _place(found, int(there[0]))]
+        first += [_span(values.sel(mode=number).values, NUMBER) for values in slopes.values()]
         for fate in _fates(one.isel(at=there)):
             table.add_row(*map(escape, (*first, *fate)))
             first = [""] * len(first)
     return table
+
+
+def _slopes(found: xr.Dataset) -> dict[str, xr.DataArray]:
+    """Return the derivatives of the growth rate by the parameters, by their heads in the table."""
+    if "d_growth_rate" not in found:
+        return {}
+    units = [str(one) for one in found["parameter_units"].values]
+    heads = [
+        f"d growth by {key} [1/s{'' if unit in ('', '1') else f' per {unit}'}]"
+        for key, unit in zip(found["parameter"].values, units, strict=True)
+    ]
+    return {head: found["d_growth_rate"].isel(parameter=number) for number, head in enumerate(heads)}
 
 
 def _place(found: xr.Dataset, at: int) -> str:

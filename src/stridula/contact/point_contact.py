@@ -177,12 +177,12 @@ class PointContact:
 
     def _check_turning(self) -> None:
         for name, point in (("tip", self.tip), ("track", self.touched_point)):
-            if point is None or not point.turning_velocity.any():
+            velocity = np.zeros(3) if point is None else point.turning_velocity
+            if not velocity.any():
                 continue
             if name == "track" and np.any(self.surface_velocity):
                 raise ArgumentError("surface_velocity", "be 0 against a body that turns", self.surface_velocity)
-            speed = float(np.linalg.norm(point.turning_velocity))
-            if abs(float(self.frame[0] @ point.turning_velocity)) > ALONG_SURFACE * speed:
+            if abs(float(self.frame[0] @ velocity)) > ALONG_SURFACE * float(np.linalg.norm(velocity)):
                 words = f"be at right angles to the velocity at which the body of the {name} turns"
                 raise ArgumentError("normal", words, self.normal)
 

@@ -143,19 +143,24 @@ class Structure:
         With a momentum ``p = q' + G q`` of each pair, ``p' + G p + damping p + stiffness q = f``.
         """
         passing, carried = np.zeros((2, self.mode_count, self.mode_count))
+        if not self.arrays.turning:
+            return passing
         for one in self.arrays.turning:
             rate, (first, second) = float(one.turning.rate(now)[0]), one.pairs.T
             for matrix, factor in ((passing, one.turning.order), (carried, one.turning.drag)):
                 matrix[first, second], matrix[second, first] = rate * np.array(factor), -rate * np.array(factor)
+        # Residual shapes have no momentum, and are most of many coordinates.
+        moving = np.flatnonzero(self.mass)
         carried *= self.mass
-        self.stiffness = self.stiffness + carried @ carried + self.damping @ carried
+        self.stiffness = self.stiffness + carried[:, moving] @ carried[moving]
+        self.stiffness[:, moving] += self.damping @ carried[:, moving]
         self.damping = self.damping + 2.0 * carried
         return passing
 
     @property
     def mode_count(self) -> int:
         """Number of modes."""
-        return self.arrays.mode_count
+        return len(self.mass)
 
     @property
     def promptness(self) -> Array:
@@ -177,7 +182,7 @@ class Structure:
     def shifted(self, shifts: Array) -> Structure:
         """Return the system with its contact points shifted along their tracks by distances [m], shape (contacts,)."""
         other = copy(self)
-        other._known = {}
+        other.forget()
         other.lines = self._lines(shifts)
         return other
 
@@ -238,6 +243,10 @@ class Structure:
                 ),
             )
         return np.asarray(self.rigid @ found)
+
+    def forget(self, but: Sequence[Hashable] = ()) -> None:
+        """Forget cached results except those of some keys."""
+        self._known = {key: one for key, one in self._known.items() if key in but}
 
     def once(self, key: Hashable, find: Callable[[], Found]) -> Found:
         """Return a cached result for the present places of the contacts.

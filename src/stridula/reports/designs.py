@@ -53,8 +53,8 @@ class Options:
         Its values, in `units`.
     units : str
         Their unit.
-    run, sound, effects, check : bool
-        Whether there is a run, its sound, effects of parameters, and checks of step and cutoff.
+    run, sound, effects, check, fates : bool
+        Whether there is a run, its sound, effects of parameters, checks of step and cutoff, and fates of growing modes.
     remedies : mapping or None
         Lowest and highest value of each parameter that may change to silence the system.
     uncertain : mapping or None
@@ -74,6 +74,7 @@ class Options:
     sound: bool
     effects: bool
     check: bool
+    fates: bool
     remedies: Mapping[str, Any] | None
     uncertain: Mapping[str, Any] | None
     samples: int

@@ -81,6 +81,7 @@ def report(
     sound: bool = True,
     effects: bool = True,
     check: bool = True,
+    fates: bool = False,
     remedies: Mapping[str, tuple[float, float]] | None = None,
     uncertain: Mapping[str, Any] | None = None,
     samples: int = 1000,
@@ -113,6 +114,9 @@ def report(
         Unit of the values, SI if left out.
     run, sound, effects, check : bool, optional
         Whether the report has a run, its sound, effects of parameters, and the checks of step and cutoffs.
+    fates : bool, optional
+        Whether a run follows each growing mode to its limit cycle, as in `squeal_survey`: the table of modes then has
+        its regime, its pitch and its level. Seconds to minutes for each mode.
     remedies : mapping, optional
         Lowest and highest value, by key, of parameters that may change, as for `smallest_change`, so that no mode grows
         at any friction up to that given; by default none.
@@ -148,7 +152,7 @@ def report(
     >>> page.titles
     ('Stick-slip on a belt',)
     """
-    words = {"run": run, "sound": sound, "effects": effects, "check": check, "progress": progress}
+    words = {"run": run, "sound": sound, "effects": effects, "check": check, "fates": fates, "progress": progress}
     for name, word in words.items():
         instance(name, word, bool)
     instance("key", key, str)
@@ -163,6 +167,7 @@ def report(
         sound=sound,
         effects=effects,
         check=check,
+        fates=fates,
         remedies=None if remedies is None else by_key("remedies", remedies),
         uncertain=None if uncertain is None else by_key("uncertain", uncertain),
         samples=count("samples", samples),

@@ -29,6 +29,7 @@ from ..studies.smallest_changes import smallest_change
 from ..studies.values_by_key import units_of
 from .blocks import Facts, Lines, Picture, Section, Table
 from .designs import COEFFICIENT, Design
+from .fates import fate_columns
 
 # Largest number of rows of a table, and of lines for contacts.
 MOST_ROWS, MOST_CONTACTS = 30, 12
@@ -122,8 +123,12 @@ def modes_section(design: Design, pictures: Pictures) -> Section:
     notes = [f"Note: {words}." for words in str(modes.attrs["notes"]).split("; ") if words]
     blocks: list[Any] = [Lines(verdict)]
     if modes.sizes["mode"]:
-        strong = modes["unstable"].values[shown_modes(modes)].tolist()
-        blocks.append(Table(_first_rows(mode_columns(modes)), strong=strong[:MOST_ROWS]))
+        shown = shown_modes(modes)
+        columns, strong = mode_columns(modes), modes["unstable"].values[shown].tolist()
+        if design.options.fates and any(strong):
+            fates, words = fate_columns(design, modes, shown)
+            columns, notes = columns | fates, [*notes, *filter(None, [words])]
+        blocks.append(Table(_first_rows(columns), strong=strong[:MOST_ROWS]))
     answers = {"linear theory": verdict[0].removeprefix("Equilibrium: ").rstrip(".")}
     return Section(title, [*blocks, Lines([*lines, *notes])], answers | _fastest(modes))
 

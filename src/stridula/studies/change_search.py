@@ -13,7 +13,7 @@ import scipy  # its parts are imported on first use
 
 from ..arrays import Array
 from ..bars.line_bars import Show
-from ..linear.growth import Growth, growth_of
+from ..linear.growth import Growth, Growths
 from ..long_tasks import check_wanted
 from .changed_systems import Range, Systems
 
@@ -81,6 +81,7 @@ class Search:
     show: Show
     tried: int = field(default=0, init=False)
     loud: tuple[float, ...] = field(default=(), init=False)
+    _growths: Growths = field(default_factory=Growths, init=False)
     _before: dict[tuple[float, ...], State] = field(default_factory=dict, init=False)
 
     @cached_property
@@ -115,7 +116,7 @@ class Search:
         """Return the growth after a change at a condition."""
         check_wanted()
         numbers = self.values(change) | dict(zip(self.over, condition, strict=True))
-        return _state_of(growth_of(self.systems.make(numbers), self.velocity))
+        return _state_of(self._growths.of(self.systems.make(numbers), self.velocity))
 
     def before(self, condition: tuple[float, ...]) -> State:
         """Return the growth without a change at a condition."""

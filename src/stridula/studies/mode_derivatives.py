@@ -124,10 +124,16 @@ def mode_sensitivity(
     if not is_written(source):
         instance("source", source, System)
     tables = si_tables(source, by_key("overrides", overrides))
-    values = all_values(tables) if parameters is None else [value_of(key, tables) for key in _keys(parameters)]
+    values = (
+        all_values(tables)
+        if parameters is None
+        else [value_of(key, tables) for key in keys_of("parameters", parameters)]
+    )
     own = scenario_of_tables(tables).system if is_written(source) or overrides else given
     with one_thread_each():
-        base = _Base(own, status, velocity, time)
+        base = Base(own, lambda system: _about(system, status, velocity, time))
+        if base.equilibrium.kind == JAMMED and status is None:
+            raise ArgumentError("source", "have an equilibrium with modes", got=base.equilibrium.kind)
         groups = {number: group_of(base.pencil, base.found, number) for number in chosen.of(base)}
         changes, refused = base.all_changes(values, list(groups.values()), keeps_on=parameters is None)
         for name, where in by_key("masses", masses).items():
@@ -155,7 +161,7 @@ class _Chosen:
             if self.modes is None:
                 raise ArgumentError("near", "be used with modes", self.near)
 
-    def of(self, base: _Base) -> list[int]:
+    def of(self, base: Base) -> list[int]:
         """Return the numbers of the chosen modes in their order."""
         values, shapes = base.found.values, base.found.shapes
         vibrates = (np.abs(values) > base.slack) & shapes.any(axis=0)
@@ -171,14 +177,20 @@ class _Chosen:
         return chosen
 
 
-class _Base:
-    """Small motions of a system about its equilibrium, and of the same with one value changed."""
+class Base:
+    """Small motions of a system about its equilibrium, and of the same with one value changed.
 
-    def __init__(self, system: System, status: Status | None, velocity: Velocity | None, time: float | None) -> None:
-        self._given = given_status(status, system), velocity, time
-        self.structure, self.equilibrium = self._about(system)
-        if self.equilibrium.kind == JAMMED and status is None:
-            raise ArgumentError("source", "have an equilibrium with modes", got=self.equilibrium.kind)
+    Parameters
+    ----------
+    system : System
+        The system.
+    about : callable
+        Function of a system that returns it as matrices, and its equilibrium.
+    """
+
+    def __init__(self, system: System, about: Callable[[System], tuple[Structure, Equilibrium]]) -> None:
+        self._about = about
+        self.structure, self.equilibrium = about(system)
         self.motion = vibration(self.structure, self.equilibrium)
         self.slack = round_off(self.structure)
 
@@ -252,19 +264,42 @@ class _Base:
         got = f"{brief(value.value)} for {value.key}, of which {brief(number)} changes them"
         return ArgumentError("parameters", f"leave {what} as they are", got=got)
 
-    def _about(self, system: System) -> tuple[Structure, Equilibrium]:
-        status, velocity, time = self._given
-        structure = Structure(system, time)
-        return structure, find_equilibrium(structure, given_velocity(velocity, structure, status), status)
+    def slopes(self, value: Value, numbers: Sequence[int]) -> list[complex]:
+        """Return the derivatives of the exponents of modes, by their numbers, by a value [1/s per its unit].
+
+        Raises
+        ------
+        ArgumentError
+            If there are none.
+        """
+        groups = [group_of(self.pencil, self.found, number) for number in numbers]
+        return [group.slope(one) for group, one in zip(groups, self.changes(value, groups), strict=True)]
 
 
-def _keys(parameters: Any) -> list[str]:
-    if isinstance(parameters, str) or not isinstance(parameters, Sequence):
-        raise ArgumentError("parameters", "be a list of keys", parameters)
-    twice = next((one for one in parameters if list(parameters).count(one) > 1), None)
+def _about(
+    system: System, status: Status | None, velocity: Velocity | None, time: float | None
+) -> tuple[Structure, Equilibrium]:
+    given = given_status(status, system)
+    structure = Structure(system, time)
+    return structure, find_equilibrium(structure, given_velocity(velocity, structure, given), given)
+
+
+def keys_of(name: str, given: Any) -> tuple[str, ...]:
+    """Return different keys; ArgumentError unless they are a list of them.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument.
+    given : Any
+        Its value.
+    """
+    if isinstance(given, str) or not isinstance(given, Sequence):
+        raise ArgumentError(name, "be a list of keys", given)
+    twice = next((one for one in given if list(given).count(one) > 1), None)
     if twice is not None:
-        raise ArgumentError("parameters", "be different", twice, got=f"{brief(twice)} twice")
-    return list(parameters)
+        raise ArgumentError(name, "be different", twice, got=f"{brief(twice)} twice")
+    return tuple(given)
 
 
 def point_of(name: str, where: Any, system: System) -> BodyPoint:
@@ -292,7 +327,7 @@ def _position(body: Any, name: str) -> Any:
 
 
 def _dataset(
-    base: _Base,
+    base: Base,
     groups: Mapping[int, ModeGroup],
     changes: Mapping[str, Sequence[Array]],
     sizes: Mapping[str, tuple[float, str]],

@@ -22,6 +22,8 @@ from ..scenarios.varied import Varied, varied_keys
 from ..system import System
 from .measures import message_of
 from .points import Layout
+from .values_by_key import in_si as in_si_tables
+from .values_by_key import si_tables
 
 # Samples per second recorded unless the scenario or the study sets fewer: enough for the named measures.
 SAMPLE_RATE = 20e3
@@ -35,6 +37,9 @@ class Source(Protocol):
 
     def scenario(self, values: Sequence[Any]) -> Scenario:
         """Return the scenario of a point; ValueError if it cannot be built."""
+
+    def tables(self, values: Sequence[Any], scenario: Scenario) -> dict[str, Any]:
+        """Return the tables of a point in SI, in which numbers are found by key, from its values and its scenario."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +70,7 @@ class OfTables:
 
     Attributes
     ----------
-    tables : dict
+    written : dict
         Complete tables of the scenario.
     paths : tuple of tuple
         Paths of the varied keys.
@@ -73,7 +78,7 @@ class OfTables:
         Largest number of samples recorded per second [Hz].
     """
 
-    tables: dict[str, Any]
+    written: dict[str, Any]
     paths: tuple[Path, ...]
     highest_rate: float = SAMPLE_RATE
 
@@ -85,8 +90,12 @@ class OfTables:
         ScenarioError
             If it cannot be built.
         """
-        made = scenario_of_tables(with_values(self.tables, zip(self.paths, values, strict=True)))
+        made = scenario_of_tables(with_values(self.written, zip(self.paths, values, strict=True)))
         return replace(made, sample_rate=min(made.sample_rate, self.highest_rate))
+
+    def tables(self, values: Sequence[Any], scenario: Scenario) -> dict[str, Any]:
+        """Return the tables of a point in SI."""
+        return in_si_tables(with_values(self.written, zip(self.paths, values, strict=True)))
 
 
 @dataclass(frozen=True)
@@ -124,6 +133,10 @@ class OfFunction:
         units = zip(self.units.items(), values, strict=True)
         named = {name: quantity(value, unit) if unit else value for (name, unit), value in units}
         return _made(self.function, self.fixed | named, self.given, self.highest_rate)
+
+    def tables(self, values: Sequence[Any], scenario: Scenario) -> dict[str, Any]:
+        """Return the tables of the system of a point in SI, as its record has them."""
+        return si_tables(scenario.system, {})
 
 
 def _made(function: SystemOf, values: Mapping[str, Any], given: Mapping[str, Any], highest_rate: float) -> Scenario:

@@ -8,15 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from ..drives import InitialEquilibrium
 from ..linear.equilibrium import JAMMED
 from ..linear.reach import equilibrium_at_start, modes_at_rest
 from ..linear.structure import SLIDING
 from ..scenarios.load import Scenario
-from ..system import System
 from .fates import FAILED, SETTLING, Options, Runs, fate_of
 from .kicks import smallest_kick
 from .sources import Source
+from .survey_slopes import differentiate, without_start
 from .task import NOT_BUILT, NOT_STARTED, Outcome, failing
 
 STABLE, UNSTABLE = "stable", "unstable"
@@ -32,10 +31,13 @@ class SurveyTask:
         Source of the scenario of a point.
     options : Options
         Options of the runs.
+    by : tuple of str
+        Keys by which the growing modes are differentiated.
     """
 
     source: Source
     options: Options
+    by: tuple[str, ...] = ()
 
     def outcomes(
         self, points: Sequence[Sequence[Any]], workers: int = 1, watch: Callable[[], None] = lambda: None
@@ -61,7 +63,19 @@ class SurveyTask:
         if not outcome["message"]:
             with failing(outcome, NOT_STARTED):
                 self._survey(scenario, outcome, watch)
+        if self.by and outcome["values"].get("modes"):
+            self._differentiate(values, scenario, outcome)
         return outcome
+
+    def _differentiate(self, values: Sequence[Any], scenario: Scenario, outcome: Outcome) -> None:
+        """Add the derivatives of the growing modes to an outcome."""
+        known = outcome["values"]
+        told: Outcome = {"ended": "", "message": ""}
+        with failing(told, FAILED):
+            tables = self.source.tables(values, scenario)
+            told["message"] = differentiate(known, self.by, tables, scenario.system, self.options.velocity)
+        if told["message"] and not outcome["message"]:
+            outcome["message"] = told["message"]
 
     def _survey(self, scenario: Scenario, outcome: Outcome, watch: Callable[[], None]) -> None:
         """Add the results of linear theory and the fates of the modes to an outcome."""
@@ -109,21 +123,3 @@ class SurveyTask:
                 frequency = float(runs.rest.exponents[number].imag) / (2.0 * np.pi)
                 outcome["message"] = f"kick of the mode at {frequency:.5g} Hz: {told['message']}"
         outcome["values"] |= min((one for one in found if one), key=lambda one: float(one["kick"]), default={})
-
-
-def without_start(system: System, velocity: float | tuple[float, ...] | None) -> tuple[System, InitialEquilibrium]:
-    """Return a system without its own start, and the equilibrium to start from.
-
-    Parameters
-    ----------
-    system : System
-        The system; statuses and slip velocities of its initial equilibrium, if any, are kept.
-    velocity : float, tuple of float or None
-        Slip velocity where nothing prescribes it [m/s], in place of those.
-    """
-    own = system.initial_equilibrium
-    kept = [
-        drive for drive in system.drives if drive is not own and drive.uniform_velocity is None and not drive.vectors
-    ]
-    asked = InitialEquilibrium() if own is None else replace(own, mode=None, amplitude=0.0, phase=0.0)
-    return replace(system, drives=kept), asked if velocity is None else replace(asked, velocity=velocity)

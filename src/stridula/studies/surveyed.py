@@ -15,6 +15,7 @@ from ..records.variables import described
 from ..scenarios.varied import Varied
 from .fates import FATES, LIVES
 from .points import Layout
+from .survey_slopes import slopes_over_modes
 from .swept import coordinates
 from .task import Outcome
 from .tones_of_modes import MOST
@@ -69,7 +70,8 @@ TONES = {
     "tone_order": ("order", "1", "frequency of the tone over that of its fundamental tone"),
 }
 # Names that keys of the points must not have.
-OWN = {*OF_POINTS, *NUMBERS, *WORDS, *TONES, "mode", "tone", "point"}
+OF_SLOPES = ("d_growth_rate", "d_frequency", "parameter", "parameter_value", "parameter_units")
+OWN = {*OF_POINTS, *NUMBERS, *WORDS, *TONES, *OF_SLOPES, "mode", "tone", "point"}
 
 
 def check_names(layout: Layout) -> None:
@@ -87,6 +89,7 @@ def surveyed(
     values: Sequence[Sequence[Any]],
     outcomes: Sequence[Outcome],
     attributes: dict[str, str],
+    by: Sequence[str] = (),
 ) -> xr.Dataset:
     """Return the outcomes of the points as a Dataset.
 
@@ -102,6 +105,8 @@ def surveyed(
         Outcome of each point.
     attributes : dict
         Attributes of the Dataset.
+    by : sequence of str, optional
+        Parameters by which modes are differentiated.
     """
     shape, dimensions = tuple(layout.dimensions.values()), tuple(layout.dimensions)
     modes = [outcome["values"].get("modes", []) for outcome in outcomes]
@@ -141,7 +146,11 @@ def surveyed(
         "mode": ("mode", np.arange(count), {"long_name": "mode, tracked from point to point"}),
         "tone": ("tone", np.arange(MOST), {"long_name": "tone, the strongest first"}),
     }
-    return xr.Dataset(data, at, attributes)
+    found = xr.Dataset(data, at, attributes)
+    if not by:
+        return found
+    points = [outcome["values"] for outcome in outcomes]
+    return found.merge(slopes_over_modes(points, rows, by, layout.dimensions, count))
 
 
 def _described(units: str, meaning: str) -> dict[str, str]:

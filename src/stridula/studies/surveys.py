@@ -15,11 +15,13 @@ from ..scenarios.quantities import quantity
 from ..version import __version__
 from .computed import Plan, Watcher, check_options, computed
 from .fates import Options
+from .mode_derivatives import keys_of
 from .points import Grid, LatinHypercube, Values, laid_out, plain_python
-from .sources import SystemOf, varying
+from .sources import SystemOf, Varying, varying
 from .survey_task import SurveyTask
 from .surveyed import check_names, surveyed
 from .task import Outcome
+from .values_by_key import value_of
 
 # Number of points computed together; each needs several runs.
 POINTS_OF_A_PART = 1
@@ -38,6 +40,7 @@ def squeal_survey(
     velocity: float | Sequence[float] | None = None,
     cycles: bool = True,
     kicks: int = 1,
+    by: Sequence[str] = (),
     sample_rate: float | str | None = None,
     out: str | Path | None = None,
     workers: int | None = None,
@@ -86,6 +89,9 @@ def squeal_survey(
         mode grows, among those that decay by a factor of 150 within `longest`: runs begin with a quarter of the reach
         of the mode, and with more until one squeals, up to eight times the reach; then the smallest kick is found to 1
         %. 0 for none.
+    by : sequence of str, optional
+        Keys of parameters, as for `mode_sensitivity`, by which frequency and growth rate of the growing modes are
+        differentiated at each point.
     sample_rate : float or str, optional
         Samples per second recorded [Hz]; by default that of the scenario, or fewer if enough for the highest mode and
         there is no sound.
@@ -113,7 +119,10 @@ def squeal_survey(
         ``growth_rate`` [1/s] by linear theory, ``seen_frequency`` and ``seen_growth_rate`` in the run, ``fate``,
         ``regime``, ``cycle_frequency`` [Hz], ``cycle_stable`` and ``leading_multiplier`` of the limit cycle near the
         end of the run, levels, shares, ``sound_level`` [dB] and more; additionally over ``tone`` the
-        tones of the limit cycle and their modes.
+        tones of the limit cycle and their modes. With `by`, over the points, ``mode`` and ``parameter`` also
+        ``d_growth_rate`` [1/s] and ``d_frequency`` [Hz] per unit of the parameter, NaN where there is no derivative,
+        and over the points and ``parameter`` its ``parameter_value``, with ``parameter_units`` over ``parameter``. A
+        derivative grows without bound where modes merge.
 
     Raises
     ------
@@ -140,7 +149,7 @@ def squeal_survey(
         velocity=None if velocity is None else one_or_each("velocity", plain_python(velocity), finite),
     )
     rate = None if sample_rate is None else _positive("sample_rate", sample_rate, "Hz")
-    plan = _planned(scenario, points, by_key("overrides", overrides), options, rate)
+    plan = _planned(scenario, points, by_key("overrides", overrides), options, rate, keys_of("by", by))
     return computed(plan, out, workers, client, watchers, progress)
 
 
@@ -152,8 +161,28 @@ def _positive(name: str, given: Any, unit: str) -> float:
         raise error.renamed(name) from None
 
 
+def _check_keys(by: Sequence[str], found: Varying) -> None:
+    """Raise ScenarioError if a key is not known at the first point; points that cannot be built have messages."""
+    values = found.values[0]
+    try:
+        tables = found.source.tables(values, found.source.scenario(values))
+    except ValueError:
+        return
+    for key in by:
+        try:
+            value_of(key, tables)
+        except ArgumentError as error:
+            if error.argument == "parameters" and "0 for" not in error.got:
+                raise error.renamed("by") from None
+
+
 def _planned(
-    scenario: Any, points: Any, overrides: Mapping[str, Any], options: Options, sample_rate: float | None
+    scenario: Any,
+    points: Any,
+    overrides: Mapping[str, Any],
+    options: Options,
+    sample_rate: float | None,
+    by: tuple[str, ...],
 ) -> Plan:
     """Return a checked survey."""
     layout = laid_out(points)
@@ -164,12 +193,15 @@ def _planned(
     timing = {"duration": options.duration or options.longest, **rate}
     found = varying(scenario, fixed, timing, layout, highest_rate=math.inf)
     asked = vars(options) | {"points": layout.asked, "overrides": fixed, "sample_rate": sample_rate}
+    if by:
+        _check_keys(by, found)
+        asked["by"] = by
     attributes = found.attributes | {
         "stridula_version": __version__,
         "survey": json.dumps(asked, ensure_ascii=False, default=str),
     }
 
     def labelled(outcomes: Sequence[Outcome]) -> xr.Dataset:
-        return surveyed(layout, found.keys, found.values, outcomes, attributes)
+        return surveyed(layout, found.keys, found.values, outcomes, attributes, by)
 
-    return Plan("survey", SurveyTask(found.source, options), found.values, POINTS_OF_A_PART, attributes, labelled)
+    return Plan("survey", SurveyTask(found.source, options, by), found.values, POINTS_OF_A_PART, attributes, labelled)

@@ -18,7 +18,8 @@ COLUMNS = (*(name for name in OF_POINTS if name != "message"), "mode", *NUMBERS,
 def survey_table(found: xr.Dataset) -> str:
     """Return a survey as comma-separated values, in SI except for the keys, which keep their units.
 
-    A point without a growing mode has one row. ``tone_frequency`` is that of the strongest tone.
+    A point without a growing mode has one row. ``tone_frequency`` is that of the strongest tone. A survey with
+    derivatives has two more columns for each parameter, such as ``d_growth_rate by friction``, per unit in SI.
 
     Parameters
     ----------
@@ -33,15 +34,20 @@ def survey_table(found: xr.Dataset) -> str:
     instance("found", found, xr.Dataset)
     if any(name not in found for name in (*OF_POINTS, *NUMBERS, *WORDS, "mode", "tone_frequency")):
         raise ArgumentError("found", "be a survey", found, got=f"variables {listed(map(str, found))}")
-    dims, keys = found["verdict"].dims, [str(name) for name in found.coords if name not in ("mode", "tone", "point")]
+    dims, keys = found["verdict"].dims, [str(name) for name in found["verdict"].coords if name != "point"]
+    by = found["parameter"].values.tolist() if "d_growth_rate" in found else []
+    slopes = [(name, key) for key in by for name in ("d_growth_rate", "d_frequency")]
     lines = io.StringIO()
     writer = csv.writer(lines, lineterminator="\n")
-    writer.writerow([*keys, *COLUMNS])
+    writer.writerow([*keys, *COLUMNS, *(f"{name} by {key}" for name, key in slopes)])
     for place in np.ndindex(found["verdict"].shape):
         point = found.isel(dict(zip(dims, place, strict=True)))
         there = np.flatnonzero(np.isfinite(point["frequency"].values)).tolist()
         for mode in there if there else (None,):
-            writer.writerow([_plain(point[key]) for key in keys] + [_cell(point, name, mode) for name in COLUMNS])
+            cells = [_plain(point[key]) for key in keys] + [_cell(point, name, mode) for name in COLUMNS]
+            of_parameters = [point[name].sel(parameter=key) for name, key in slopes]
+            cells += ["" if mode is None else _plain(one.isel(mode=mode)) for one in of_parameters]
+            writer.writerow(cells)
     return lines.getvalue()
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..linear.growth import Growth, growth_of
+from ..linear.growth import Growth, Growths
 from ..system import System
 from .sources import Source
 from .task import NOT_BUILT, NOT_SIMULATED, Outcome, failing
@@ -31,16 +31,17 @@ class TheoryTask:
         self, points: Sequence[Sequence[Any]], workers: int = 1, watch: Callable[[], None] = lambda: None
     ) -> list[Outcome]:
         """Return the outcomes of some points, identical to the last bit for the same points."""
-        return [self._outcome(values, watch) for values in points]
+        growths = Growths()
+        return [self._outcome(values, watch, growths) for values in points]
 
     def kept(self, system: System, known: Growth) -> tuple[str, dict[str, Any]]:
         """Return the ending of a point, and what is kept of its growing motions."""
         raise NotImplementedError
 
-    def _outcome(self, values: Sequence[Any], watch: Callable[[], None]) -> Outcome:
+    def _outcome(self, values: Sequence[Any], watch: Callable[[], None], growths: Growths) -> Outcome:
         watch()
         outcome: Outcome = {"ended": NOT_SIMULATED, "message": "", "values": {}}
         with failing(outcome, NOT_BUILT):
             system = self.source.scenario(values).system
-            outcome["ended"], outcome["values"] = self.kept(system, growth_of(system, self.velocity))
+            outcome["ended"], outcome["values"] = self.kept(system, growths.of(system, self.velocity))
         return outcome
