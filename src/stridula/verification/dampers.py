@@ -26,10 +26,10 @@ HELD = (SHUT - OPEN) * OPENS
 def damper() -> System:
     """Return the mass on a plane without friction, against the damper."""
     mass = PointMass(MASS)
-    table = {"velocity": [-OPENS, 0.0, OPENS, 2.0 * OPENS], "force": [-3.0, 0.0, SHUT * OPENS, (SHUT + OPEN) * OPENS]}
+    velocity, force = [-OPENS, 0.0, OPENS, 2.0 * OPENS], [-3.0, 0.0, SHUT * OPENS, (SHUT + OPEN) * OPENS]
     contact = PointContact(mass.centre, RigidTrack(), friction=Coulomb(0.0))
     drives = [Force(mass.centre, y=-1.0), InitialVelocity(mass, x=START)]
-    return System(contact, drives, [TabulatedDashpot(mass.centre, **table)])
+    return System(contact, drives, [TabulatedDashpot(mass.centre, velocity=velocity, force=force)])
 
 
 def closing() -> tuple[float, float]:
