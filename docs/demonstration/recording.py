@@ -92,8 +92,10 @@ def record(instrument: Instrument, x: float, y: float) -> Setting:
         number = int(instrument.highest / base)
         lines, moved = (amplitudes(signals, RATE, base, number) for signals in (pressure, velocity))
     lines = strongest(lines[: int(instrument.highest / base), 0], LINES)
-    whole = float(np.var(pressure)) if repeated else power(pressure[:, 0])
-    share = min(float(0.5 * np.sum(np.abs(lines) ** 2)) / whole, 1.0)
+    carried = float(0.5 * np.sum(np.abs(lines) ** 2))
+    # What still changes has other power under another window: no more than all is in the lines.
+    whole = max(float(np.var(pressure)) if repeated else power(pressure[:, 0]), carried)
+    share = carried / whole
     level = 10.0 * float(np.log10(whole / REFERENCE**2))
     motion = motion_of(run, moved, drawn, base)
     # Forces may have an octave of the tone that is heard.

@@ -12,6 +12,7 @@ from stridula import analysis
 from stridula.analysis.pitch import audible_spectrum
 from stridula.analysis.recurrences import recurrence
 from stridula.analysis.status_cycles import StatusCycles
+from stridula.weighting import a_weighting
 
 LOWEST, HIGHEST = 20.0, 8000.0
 # Clear of the lowest tone, which divides stick-slip from squeal.
@@ -185,6 +186,29 @@ def test_the_pitch_is_the_tone_with_which_its_partials_repeat():
     apart = audible_spectrum(tone(330.0) + tone(1030.0, mean=0.0), 5e-5, whole, 0.03, 300.0)
     assert apart.pitch == pytest.approx(1030.0, abs=1.0)
     assert sorted(apart.tones(2)) == pytest.approx([330.0, 1030.0], abs=1.0)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_cycles_have_the_pitch_if_odd_partials_have_a_tenth_of_the_audible_power(seed):
+    """The second partial is the strongest; phases are random, and powers are those under the weighting."""
+    random = np.random.default_rng(seed)
+    first, odd = random.uniform(320.0, 900.0), 0.05 if seed % 2 else 0.2
+    time, numbers = np.arange(24_000) / 48e3, np.arange(1, 7)
+    shares = random.uniform(0.05, 0.3, numbers.size)
+    shares[1] = 1.0
+    is_odd = numbers % 2 == 1
+    shares[is_odd] *= odd / (1.0 - odd) * shares[~is_odd].sum() / shares[is_odd].sum()
+    sizes = np.sqrt(shares) / np.abs(a_weighting(first * numbers))
+    force = np.sum(
+        [
+            size * np.cos(2.0 * np.pi * (first * n * time + random.random()))
+            for size, n in zip(sizes, numbers, strict=True)
+        ],
+        axis=0,
+    )
+    found = audible_spectrum(force[None], 1.0 / 48e3, np.array([[0, force.size]]), 0.03, 300.0)
+    assert found.pitch == pytest.approx(2.0 * first, rel=2e-3)
+    assert found.pitch_among(first) == pytest.approx(first if odd > 0.1 else 2.0 * first, rel=2e-3)
 
 
 def test_a_record_in_single_precision_has_its_pitch():

@@ -24,8 +24,9 @@ NEARLY, REPEATS = 0.5, 0.3
 # Longest period for which repetition is measured, in frames.
 LONGEST = 0.5
 # A tone may be a partial of the cycles if it is this close to a multiple of their frequency [1], and if repetition with
-# its own period is at most the second value times that with the period of the cycles [1].
-NEAR, ALONE = 0.02, 0.6
+# its own period is at most the second value times that with the period of the cycles [1]: of the second partial, if the
+# odd ones have a tenth of the audible power.
+NEAR, ALONE = 0.02, 0.8
 # The number of a partial is certain if the tone is this close to the multiple, in points that a frame resolves.
 CERTAIN = 0.1
 # Other tones are at most this far below the strongest [dB], and stand out by this much [dB].

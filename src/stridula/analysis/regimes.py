@@ -245,7 +245,7 @@ def _at_rest(found: Measures, limits: Thresholds) -> tuple[str, float]:
     """Return the regime of a run whose status settles, and its margin."""
     if found.last_status != 2:
         return (STICKS if found.last_status == 1 else LEFT), math.inf
-    tonal, heard = odds_above(found.tonality, limits.tonal), above(found.audibility, limits.faint)
+    tonal, heard = _tonal(found, limits), above(found.audibility, limits.faint)
     kept = min(tonal, heard, above(found.growth, KEPT))
     growing = min(tonal, above(found.audibility, BUDDING * limits.faint), above(found.growth, GROWING))
     hidden = min(
@@ -263,7 +263,7 @@ def _on_the_move(found: Measures, limits: Thresholds) -> tuple[str, float]:
     # A cycle of states this fast is a limit cycle, even if its forces are faint.
     heard = max(above(found.audibility, limits.faint), above(found.change_rate, limits.lowest_tone))
     sustained = math.inf if math.isnan(found.periods) else above(found.periods, SUSTAINED)
-    squeals = min(heard, odds_above(found.tonality, limits.tonal), sustained)
+    squeals = min(heard, _tonal(found, limits), sustained)
     if squeals >= 0.0:
         return SQUEALS, squeals
     # The share is relative to the time without sticking, so that the length of stick phases does not matter.
@@ -279,6 +279,11 @@ def _on_the_move(found: Measures, limits: Thresholds) -> tuple[str, float]:
     if holds >= 0.0 and returns < 0.0:
         return STICKS, min(-squeals, holds)
     return SLIPS, min(-squeals, -opens, max(returns, min(sticks, -holds)))
+
+
+def _tonal(found: Measures, limits: Thresholds) -> float:
+    """Return how far the tonality is above its threshold; power without a pitch repeats itself as cycles do."""
+    return -math.inf if math.isnan(found.tone) else odds_above(found.tonality, limits.tonal)
 
 
 def above(value: float, threshold: float) -> float:
