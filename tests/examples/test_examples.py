@@ -142,6 +142,21 @@ def check_brake(names: Mapping[str, Any], printed: str, folder: Path) -> None:
     assert (folder / "brake.png").read_bytes().startswith(b"\x89PNG")
 
 
+def check_brake_dimensions(names: Mapping[str, Any], printed: str, folder: Path) -> None:
+    """With its usual dimensions it is the shipped brake, with fewer points; a thicker disc has higher modes."""
+    shipped = st.sliding_stability(st.load_scenario("brake").system)
+    slowest = float(shipped.frequency[shipped.unstable].min())
+    thicknesses, angles = names["found"].values()
+    usual = dict(thicknesses)[20.0]
+    assert [hertz for hertz, _ in usual] == pytest.approx([slowest], rel=2e-3)
+    lowest = [modes[0][0] for _, modes in thicknesses]
+    assert (np.diff(lowest) > 100.0).all()
+    assert len(angles) == 6
+    assert printed.count(" Hz by ") == sum(len(modes) for _, modes in (*thicknesses, *angles))
+    for name in ("brake-dimensions.png", "brake_dimensions.png"):
+        assert (folder / name).read_bytes().startswith(b"\x89PNG")
+
+
 def check_brake_loop(names: Mapping[str, Any], printed: str, folder: Path) -> None:
     """A small mass silences the brake, no smaller one does, and in time it decays as fast as by linear theory.
 
@@ -260,6 +275,7 @@ def check_lining(names: Mapping[str, Any], printed: str, folder: Path) -> None:
 # One check for every example: it takes the example's names, what it printed and the folder it ran in.
 CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
     "brake.py": check_brake,
+    "brake_dimensions.py": check_brake_dimensions,
     "brake_loop.py": check_brake_loop,
     "brake_pad.py": check_brake_pad,
     "brake_shim.py": check_brake_shim,

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from ..acoustics.levels import REFERENCE, decibels
 from ..arrays import Array
 
 # Shortest and longest time that decides a regime [s], and number of periods in it.
@@ -117,6 +116,9 @@ def words(found: dict[str, Any], level: float | None) -> str:
 
 def level_of(pressure: Array) -> float | None:
     """Return the level of a sound pressure [dB], None for silence."""
+    # Its package takes a third of the time until the process of the present motion answers, and this has no sound.
+    from ..acoustics.levels import REFERENCE, decibels
+
     mean = float(np.mean(np.square(pressure, dtype=float))) if len(pressure) else 0.0
     return float(decibels(np.asarray(mean))) if mean > REFERENCE**2 else None
 
