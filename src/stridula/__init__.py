@@ -108,7 +108,7 @@ _HOME = {
         "simulate_many",
     ),
     "acoustics.levels": ("equivalent_level", "harmonic_levels", "sound_level", "third_octave_levels"),
-    "acoustics.sensation": ("loudness", "loudness_over_time", "roughness", "sharpness"),
+    "acoustics.sensation": ("loudness", "loudness_over_time", "prominent_tones", "roughness", "sharpness"),
     "acoustics.squeals": ("squeal_events",),
     "acoustics.listening": ("PlayableSound", "listen"),
     "acoustics.wav": ("SoundFile", "read_wav", "write_wav"),

@@ -29,6 +29,7 @@ from .acoustics.listening import PlayableSound as PlayableSound
 from .acoustics.listening import listen as listen
 from .acoustics.sensation import loudness as loudness
 from .acoustics.sensation import loudness_over_time as loudness_over_time
+from .acoustics.sensation import prominent_tones as prominent_tones
 from .acoustics.sensation import roughness as roughness
 from .acoustics.sensation import sharpness as sharpness
 from .acoustics.squeals import squeal_events as squeal_events

@@ -41,6 +41,7 @@ SLOW = {
     "bodies",
     "loudness",
     "loudness_over_time",
+    "prominent_tones",
     "roughness",
     "sharpness",
     "view",

@@ -69,6 +69,53 @@ def test_roughness_needs_modulation():
     assert float(st.roughness(modulated(modulation=5.0))[0]) < 0.3
 
 
+def bandwidth(frequency):
+    """Width of the critical band about a frequency [Hz], ECMA-418-1."""
+    return 25.0 + 75.0 * (1.0 + 1.4 * (frequency / 1e3) ** 2) ** 0.69
+
+
+def in_noise(frequency, ratio, seed, duration=3.0):
+    """Return a tone whose critical band in white noise has a level [dB] over that of the noise alone."""
+    noise = np.random.default_rng(seed).standard_normal(round(48e3 * duration))
+    time = np.arange(noise.size) / 48e3
+    size = np.sqrt(2.0 * bandwidth(frequency) / 24e3 * (10.0 ** (ratio / 10.0) - 1.0))
+    return heard(1e-2 * (noise + size * np.sin(2.0 * np.pi * frequency * time + seed)))
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_tones_in_noise_have_the_ratio_of_their_bands(seed):
+    random = np.random.default_rng(seed)
+    frequency, ratio = 10.0 ** random.uniform(2.4, 3.9), random.uniform(6.0, 40.0)
+    found = st.prominent_tones(in_noise(frequency, ratio, seed))
+    first = found.isel(tone=0)
+    assert float(first.frequency) == pytest.approx(frequency, abs=0.1)
+    # Bands beside it are not quite as wide, and the power of noise in three seconds of a band scatters.
+    assert float(first.prominence_ratio) == pytest.approx(ratio, abs=1.5)
+    assert (np.diff(found.prominence_ratio) <= 0.0).all()
+    assert not found.prominent[1:].any()
+
+
+@pytest.mark.parametrize("frequency", [400.0, 1500.0, 5000.0])
+def test_a_tone_is_prominent_from_nine_decibels_on(frequency):
+    limit = 9.0 + 10.0 * max(np.log10(1e3 / frequency), 0.0)
+    for beyond in (-2.0, 2.0):
+        first = st.prominent_tones(in_noise(frequency, limit + beyond, 3)).isel(tone=0)
+        assert float(first.frequency) == pytest.approx(frequency, abs=0.5)
+        assert bool(first.prominent) == (beyond > 0.0)
+
+
+def test_tones_of_listeners_noise_and_silence():
+    quiet, loud = heard(1e-3 * np.random.default_rng(0).standard_normal(48_000)), in_noise(2800.0, 30.0, 1, 1.0)
+    both = xr.concat([loud, quiet, 0.0 * quiet], "listener").transpose("time", "listener")
+    found = st.prominent_tones(both.assign_coords(listener=["ear", "noise", "silence"]))
+    assert found.prominent.sum("tone").values.tolist() == [1, 0, 0]
+    alone = st.prominent_tones(loud)
+    xr.testing.assert_allclose(found.sel(listener="ear", drop=True).isel(tone=slice(alone.sizes["tone"])), alone)
+    assert np.isnan(found.frequency.sel(listener="silence")).all()
+    assert st.prominent_tones(0.0 * quiet).sizes["tone"] == 0
+    assert found.prominence_ratio.attrs["units"] == "dB"
+
+
 @pytest.mark.parametrize("function", [st.loudness, st.loudness_over_time, st.sharpness, st.roughness])
 def test_each_listener_has_its_own_value(function):
     one = modulated(0.6)
@@ -86,6 +133,7 @@ def test_each_listener_has_its_own_value(function):
         (st.loudness, 0.4, "pressure must last at least 0.5 s for the loudness of a steady sound, got 0.4 s"),
         (st.loudness_over_time, 0.2, "pressure must last at least 0.25 s for loudness over time, got 0.2 s"),
         (st.sharpness, 0.4, "pressure must last at least 0.5 s for sharpness, got 0.4 s"),
+        (st.prominent_tones, 0.4, "pressure must last at least 0.5 s for tones, got 0.4 s"),
         (st.roughness, 0.1, "pressure must last at least 0.2 s for roughness, got 0.1 s"),
     ],
 )

@@ -19,6 +19,7 @@ _HOME = {
     "loudness": "sensation",
     "loudness_over_time": "sensation",
     "read_wav": "wav",
+    "prominent_tones": "sensation",
     "roughness": "sensation",
     "sharpness": "sensation",
     "sound_level": "levels",

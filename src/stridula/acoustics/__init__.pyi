@@ -13,6 +13,7 @@ from .resistance import radiation_damping as radiation_damping
 from .resistance import radiation_efficiency as radiation_efficiency
 from .sensation import loudness as loudness
 from .sensation import loudness_over_time as loudness_over_time
+from .sensation import prominent_tones as prominent_tones
 from .sensation import roughness as roughness
 from .sensation import sharpness as sharpness
 from .squeals import squeal_events as squeal_events

@@ -1,4 +1,4 @@
-"""Psychoacoustics: loudness, sharpness, roughness, computed by MoSQITo (imported only here)."""
+"""Psychoacoustics: loudness, sharpness, roughness, prominent tones, computed by MoSQITo (imported only here)."""
 
 from __future__ import annotations
 
@@ -161,6 +161,73 @@ def roughness(pressure: xr.DataArray) -> xr.DataArray:
     values = _each(sounds, lambda sound: np.atleast_1d(metrics.roughness_dw(sound, RATE, overlap=0.5)[0]))
     time = 0.5 * FRAME + 0.5 * FRAME * np.arange(len(values[0]))
     return over_time(pressure, time, np.stack(values, axis=1), "roughness", "asper", "roughness, Daniel & Weber")
+
+
+def prominent_tones(pressure: xr.DataArray) -> xr.Dataset:
+    """Return the tones that stand out of a steady sound, by their prominence ratio (ECMA-418-1:2022).
+
+    The prominence ratio is the level of the critical band around a tone over the mean of both its neighbours. A tone is
+    prominent from 9 dB on, below 1 kHz from ``9 dB + 10 lg(1 kHz / frequency)`` dB on. Of several tones in a critical
+    band only the strongest is named, and partials in neighbouring bands hide each other: the ratio of a partial of a
+    periodic sound may be small though it is heard. Sounds without any noise, such as computed ones, have ratios of 100
+    dB and more.
+
+    Parameters
+    ----------
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        Sound pressure [Pa], at 28.3 kHz or more; at least 0.5 s. The sounds of several listeners are judged each.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``tone`` (and ``listener``), by falling ratio: ``frequency`` [Hz], ``prominence_ratio`` [dB] and whether
+        the tone is ``prominent``. Tones whose ratio is not above 0 dB are left out; listeners with fewer tones than
+        others have NaN and False behind theirs.
+
+    Raises
+    ------
+    ValueError
+        If the sound is too short or sampled too slowly.
+    ImportError
+        If the extra ``psycho`` is not installed.
+    """
+    metrics = _metrics()
+    sounds = _sounds(pressure, SHORTEST_STEADY, "tones")
+    found = _each(sounds, lambda sound: _tones_of(sound, metrics))
+    values = np.full((max(map(len, found)), len(found), 3), np.nan)
+    for number, tones in enumerate(found):
+        values[: len(tones), number] = tones
+    along = ("tone", "listener") if "listener" in pressure.dims else ("tone",)
+    values = values if "listener" in pressure.dims else values[:, 0]
+    names = (("frequency", "Hz", "frequency of the tone"), ("prominence_ratio", "dB", "prominence ratio, ECMA-418-1"))
+    data = {
+        name: (along, values[..., k], {"units": units, "long_name": meaning})
+        for k, (name, units, meaning) in enumerate(names)
+    }
+    judged = (along, values[..., 2] == 1.0, {"long_name": "whether the tone is prominent, ECMA-418-1"})
+    kept = {name: one for name, one in pressure.coords.items() if one.dims == ("listener",)}
+    return xr.Dataset({**data, "prominent": judged}, kept)
+
+
+def _tones_of(sound: Array, metrics: Any) -> Array:
+    """Return frequency [Hz], prominence ratio [dB] and prominence of the tones of a sound, shape (tones, 3)."""
+    _, ratios, judged, places = metrics.pr_ecma_st(sound, RATE, prominence=False)
+    found = np.column_stack([np.atleast_1d(one).astype(float) for one in (places, ratios, judged)]).reshape(-1, 3)
+    found = found[np.isfinite(found).all(axis=1) & (found[:, 1] > 0.0)]
+    # The library names the edge of a line of its spectrum.
+    spectrum = np.abs(np.fft.rfft(sound * np.hanning(sound.size)))
+    found[:, 0] = [_top_near(spectrum, one * sound.size / RATE) * RATE / sound.size for one in found[:, 0]]
+    return found[np.argsort(-found[:, 1], kind="stable")]
+
+
+def _top_near(spectrum: Array, place: float) -> float:
+    """Return the place of the highest line within two of a place, by a parabola through its logarithm."""
+    first = max(round(place) - 2, 1)
+    top = first + int(np.argmax(spectrum[first : round(place) + 3]))
+    if not 0 < top < spectrum.size - 1 or not spectrum[top - 1 : top + 2].all():
+        return float(top)
+    left, middle, right = np.log(spectrum[top - 1 : top + 2])
+    return float(top + 0.5 * (left - right) / (left - 2.0 * middle + right))
 
 
 def _metrics() -> Any:
