@@ -86,6 +86,25 @@ def test_friction_and_damping_come_back_within_their_intervals():
     assert sum(narrow) >= 20
 
 
+@pytest.mark.parametrize("rig", RIGS)
+def test_the_regime_of_a_recording_is_that_of_the_record(rig):
+    """Of a forced vibration, in which the contact slides, the vibration cannot tell this, and says so."""
+    system, settings = rig()
+    own = analysis.regime(st.simulate(system, **settings))
+    for share in (0.01, 0.03, 0.1):
+        heard = analysis.vibration_regime(recorded(rig, share))
+        if own.regime == "stick-slip":
+            assert heard.regime == "stick-slip"
+            assert float(heard.frequency) == pytest.approx(float(own.frequency), rel=5e-3)
+        elif rig is driven:
+            assert heard.regime == "stick-slip"
+            assert float(heard.confidence) <= 0.75
+            assert "whether the contact sticks in each cycle" in heard.attrs["unknown"]
+        else:
+            assert own.regime == "stable sliding"
+            assert heard.regime == "quiet"
+
+
 def test_what_a_recording_does_not_determine_is_said():
     """A parameter without any effect."""
     found = st.calibrate_to(
@@ -115,20 +134,29 @@ def test_a_model_that_cannot_vibrate_so_is_doubted():
 
 
 def test_chaotic_vibration_is_told_and_its_intervals_are_wide():
-    """Measures of bouncing scatter from run to run: differences of two runs told friction to 0.3 %, 2 % away."""
-    run = st.load_scenario("weak-pressure").simulate(duration=0.3)["normal_force"]
-    with pytest.warns(st.DoubtfulValue, match="the vibration is chaotic"):
-        found = st.calibrate_to(
-            run[len(run) // 10 :],
-            "weak-pressure",
-            {"friction": (0.7, 1.5)},
-            signal="normal_force",
-            duration=0.3,
-            population=8,
-            generations=2,
-        )
-    assert float(found["scatter"]) > 0.3
-    assert float(found["low"][0]) < 1.2 < float(found["high"][0])
+    """Measures of bouncing scatter from run to run: differences of two runs told friction to 0.3 %, 2 % away.
+
+    Of twelve such trials eight intervals held the truth, and eleven of twice their width; which ones depends on the
+    rounding of a machine.
+    """
+    inside = []
+    for friction in (0.9, 1.0, 1.1, 1.2, 1.3, 1.4):
+        run = st.load_scenario("weak-pressure", {"friction": friction}).simulate(duration=0.3)["normal_force"]
+        with pytest.warns(st.DoubtfulValue, match="the vibration is chaotic"):
+            found = st.calibrate_to(
+                run[len(run) // 10 :],
+                "weak-pressure",
+                {"friction": (0.7, 1.5)},
+                signal="normal_force",
+                duration=0.3,
+                population=8,
+                generations=2,
+            )
+        assert float(found["scatter"]) > 0.3
+        low, high = float(found["low"][0]), float(found["high"][0])
+        assert high - low > 0.01 * friction
+        inside.append(abs(friction - 0.5 * (low + high)) < high - low)
+    assert sum(inside) >= 4
 
 
 def test_measures_of_ones_own_need_no_tone():

@@ -107,6 +107,16 @@ def test_a_vibration_that_dies_away_or_is_as_faint_as_the_floor_is_quiet():
 
 
 @pytest.mark.parametrize("seed", range(20))
+def test_slow_vibration_that_dies_away_is_quiet_and_stick_slip_that_stops_is_not(seed):
+    dice = np.random.default_rng(seed)
+    frequency, decay = 10.0 ** dice.uniform(1.2, 2.2), TIME[-1] / dice.uniform(3.0, 12.0)
+    swing = np.sin(2.0 * np.pi * frequency * TIME + dice.uniform(0.0, 6.0))
+    assert analysis.vibration_regime(vibration(np.exp(-TIME / decay) * swing + 1e-3 * noise(seed))).regime == "quiet"
+    stopped = np.where(dice.uniform(0.4, 0.8) * TIME[-1] > TIME, swing, 0.0)
+    assert analysis.vibration_regime(vibration(stopped + 1e-3 * noise(seed))).regime == "stick-slip"
+
+
+@pytest.mark.parametrize("seed", range(20))
 def test_bodies_that_ring_after_a_stroke_are_quiet(seed):
     """Random modes, some in pairs that beat, with random damping, in noise, after what is ignored."""
     dice, ringing = np.random.default_rng(seed), 1e-3 * noise(seed)

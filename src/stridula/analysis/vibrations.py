@@ -41,6 +41,8 @@ SHORTEST_STOP = 20e-3
 # for longer than some windows, the times in which it falls by half and to a tenth, or to twice what is left, are at
 # least in this ratio, relative to that of free vibration.
 BEGINNING, TENTH, SUSTAINED, WINDOWS = 0.2, 0.1, 1.8, 4.0
+# Cycles in the windows of the envelope of slow cycles.
+CYCLES = 2.0
 # Percentiles of the envelope that stand for bursts and for stops.
 LOUD, SILENT = 90.0, 10.0
 MEANINGS = {
@@ -117,6 +119,9 @@ def vibration_regime(
     recurrence, cycle = _recurrence(about, interval, lowest_tone)
     lasts = _lasting(about, interval, heard, lowest_tone)
     name, margin = _decided(level, still, heard, lasts, recurrence, limits)
+    if name == SLIPS:
+        turning = _lasting_cycles(about, interval, cycle)
+        name, margin = (SLIPS, min(margin, turning)) if turning >= 0.0 else (QUIET, -turning)
     spectrum = audible_spectrum(about[None], interval, np.array([[0, about.size]]), frame, lowest_tone)
     frequency = {SQUEALS: spectrum.pitch, SLIPS: cycle}.get(name, math.nan)
     is_noise, buzzes = name == JUDDERS and floor is None, name == SQUEALS and _buzzes(heard.tonality, recurrence)
@@ -209,10 +214,24 @@ def _lasting(values: Array, interval: float, heard: Frames, lowest_tone: float) 
         return math.inf
     if np.argmax(heard.amplitude) >= BEGINNING * heard.amplitude.size:
         return math.inf
-    return max(above(heard.growth, KEPT), _sustained(_envelope(values, interval, SMOOTHING, lowest_tone), interval))
+    level = _envelope(values, interval, SMOOTHING, lowest_tone)
+    return max(above(heard.growth, KEPT), _sustained(level, interval, SMOOTHING))
 
 
-def _sustained(level: Array, interval: float) -> float:
+def _lasting_cycles(values: Array, interval: float, frequency: float) -> float:
+    """Return the margin by which slow cycles do not die away from the beginning on, in factors of two."""
+    if not frequency > 0.0:
+        return math.inf
+    smoothing, about = CYCLES / frequency, values - values.mean()
+    level = np.sqrt(np.maximum(moving_mean(about**2, max(1, 2 * round(smoothing / interval / 2.0) + 1)), 0.0))
+    if np.argmax(level) >= BEGINNING * level.size:
+        return math.inf
+    half = values.size // 2
+    growth = math.sqrt(float(np.mean(about[half:] ** 2)) / float(np.mean(about[:half] ** 2)))
+    return max(above(growth, KEPT), _sustained(level, interval, smoothing))
+
+
+def _sustained(level: Array, interval: float, smoothing: float) -> float:
     """Return the margin by which an envelope falls late and fast, not as a free vibration, in factors of two.
 
     A free vibration takes the times ``ln 2`` to ``ln 10`` to fall by half and to a tenth.
@@ -220,7 +239,7 @@ def _sustained(level: Array, interval: float) -> float:
     top = float(level.max())
     lowest = max(TENTH, 2.0 * float(np.median(level[level.size // 2 :])) / top)
     loud, heard = (np.flatnonzero(level >= share * top) for share in (0.5, lowest))
-    if lowest >= 0.5 or loud.size * interval <= WINDOWS * SMOOTHING:
+    if lowest >= 0.5 or loud.size * interval <= WINDOWS * smoothing:
         return -math.inf
     # Of two modes that beat the last times tell, of strokes that follow each other the total ones.
     share = min((loud[-1] - loud[0]) / (heard[-1] - loud[0]), loud.size / heard.size)
