@@ -259,3 +259,37 @@ def test_energy_of_a_cycle_is_the_area_of_the_table():
     run = st.simulate(system, 1.0)
     expected = quad(lambda t: damper.pull(0.5 * np.cos(t)) * 0.5 * np.cos(t) / (2.0 * np.pi), 0.0, 2.0 * np.pi)[0]
     assert float(run["damping_loss"][-1]) == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.parametrize("scheme", [st.ExactModal(), st.CentralDifference()])
+def test_a_beam_with_a_damper_that_yields_moves_as_its_modes_do(scheme):
+    """The modes of a track with a damper, under a force, integrated by SciPy."""
+    beam = st.ModalBeam(st.Material(2.1e11, 7800.0, 0.3), st.Rectangle(0.02, 0.009), 1.1, damping=0.01, cutoff=1.5e3)
+    table = {"velocity": [-0.05, -0.01, 0.01, 0.05], "force": [-0.6, -0.4, 0.2, 0.5]}
+    damper = st.TabulatedDashpot(beam.at(0.4), direction="y", **table)
+    mass = st.PointMass(0.1)
+    push = st.Force(beam.at(0.3), y=-20.0, history=st.Harmonic(60.0))
+    system = st.System(st.PointContact(mass.centre, beam, at=0.5, gap=1.0), [push], [damper])
+    run = st.simulate(system, 0.1, scheme=scheme, probes=[st.Displacement(beam.at(0.4), "y")])
+    modes = beam.modes()
+    w, d = modes.angular_frequency, modes.damping_rate
+    at_damper, at_push = (beam.trace(x)[1] for x in (0.4, 0.3))
+
+    def rates(t, y):
+        q, v = y.reshape(2, -1)
+        pulled = damper.pull(at_damper @ v) * at_damper
+        return np.concatenate([v, -d * v - w**2 * q - pulled - 20.0 * np.sin(2.0 * np.pi * 60.0 * t) * at_push])
+
+    exact = at_damper @ motion(rates, np.zeros(2 * w.size), run["time"].values, 1e-4)[: w.size]
+    assert np.abs(run["displacement"].values[:, 0] - exact).max() < 1e-4 * np.abs(exact).max()
+
+
+def test_a_dashpot_where_residual_shapes_yield_is_refused():
+    """Its force would follow from the motion that it causes at once, the more so the shorter the step."""
+    mesh = st.SolidMesh.block((0.04, 0.02, 0.02), (4, 2, 2))
+    block = st.SolidBody(mesh, st.Material(4e9, 2500.0, 0.25), cutoff=10e3, damping=0.01, contact_faces={"bottom": 4})
+    face = st.SurfaceContact(block, "bottom", st.RigidTrack(velocity=1.0), friction=st.Coulomb(0.2), stiffness=1e11)
+    place = block.face_points("bottom").place[0].tolist()
+    hard = st.TabulatedDashpot(block.at(place), direction="x", velocity=[-1.0, 0.0, 1.0], force=[-1.0, 0.0, 1e4])
+    with pytest.raises(ValueError, match=r"^connections must have tabulated dashpots only where residual shapes"):
+        st.simulate(st.System(face, [st.Force(block.at(place), y=-10.0)], [hard]), 1e-4)
