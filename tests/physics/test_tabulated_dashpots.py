@@ -293,3 +293,11 @@ def test_a_dashpot_where_residual_shapes_yield_is_refused():
     hard = st.TabulatedDashpot(block.at(place), direction="x", velocity=[-1.0, 0.0, 1.0], force=[-1.0, 0.0, 1e4])
     with pytest.raises(ValueError, match=r"^connections must have tabulated dashpots only where residual shapes"):
         st.simulate(st.System(face, [st.Force(block.at(place), y=-10.0)], [hard]), 1e-4)
+
+
+def test_drawings_name_the_velocities_of_the_table():
+    mass = st.PointMass(1.0)
+    damper = st.TabulatedDashpot(mass.centre, velocity=[-1.0, 0.0, 2.0], force=[-1.0, 0.0, 5.0])
+    figure = st.plot.system(held_by([damper], mass))
+    words = " ".join(text.get_text() for text in figure.findobj(match=lambda one: hasattr(one, "get_text")))
+    assert "tabulated dashpot from -1 to 2 m/s" in words

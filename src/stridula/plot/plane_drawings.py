@@ -434,7 +434,7 @@ def connection_value(connection: Any) -> str:
     if hasattr(connection, "stiffness_at_rest"):
         return f"{spoken(connection.stiffness_at_rest, 'N/m')} at rest"
     if connection.bend is not None:
-        return str(connection).removeprefix("dashpot ")
+        return f"from {connection.velocity[0]:.4g} to {connection.velocity[-1]:.4g} m/s"
     stiffness, damping = connection.rates
     words = spoken(stiffness, "N/m") if stiffness else spoken(damping, "N s/m")
     return f"{words}, moved{in_time(connection.history)}" if connection.moved_by else words
