@@ -34,18 +34,20 @@ def piston_of(pad: object, side: float, mass: float = 0.4) -> st.RigidBody:
 def with_shims(stiffness: float, loss: float, shear: float = 0.1) -> st.System:
     """The brake with a shim of a stiffness [N/m] and a loss factor on each pad; that along it is a share of it."""
     # A material with this loss factor grows stiffer with the frequency.
-    measured = stiffness * (FREQUENCY / 3e3) ** (2.0 / np.pi * np.arctan(loss)) / len(PLACES)
+    measured = stiffness * (FREQUENCY / 3e3) ** (2.0 / np.pi * np.arctan(loss))
     connections = [one for one in bare.connections if one.direction != "y"]
     drives = [one for one in bare.drives if not isinstance(one, st.Force)]
     for pad, side in zip((body for body in bare.bodies if body.kind == "solid"), (1.0, -1.0), strict=True):
         piston = piston_of(pad, side)
         connections.append(st.Bushing(piston.centre, stiffness=[1e7, 1e6, 1e7], rotational_stiffness=[1e3] * 3))
         drives.append(st.Force(piston.centre, y=-side * LOAD))
-        for k, (x, z) in enumerate(PLACES):
-            ends = pad.at((x, side * BACK, z)), piston.at(f"shim {k}")
-            for direction, share in (("y", 1.0), ("x", shear), ("z", shear)):
-                table = {"frequency": FREQUENCY, "stiffness": share * measured, "loss_factor": np.full(6, loss)}
-                connections.append(st.ViscoelasticSpring(*ends, direction=direction, **table))
+        connections += st.viscoelastic_layer(
+            [pad.at((x, side * BACK, z)) for x, z in PLACES],
+            [piston.at(f"shim {k}") for k in range(len(PLACES))],
+            frequency=FREQUENCY,
+            stiffness={"y": measured, "x": shear * measured, "z": shear * measured},
+            loss_factor=np.full(6, loss),
+        )
     return st.System(bare.contacts, drives, connections)
 
 

@@ -75,6 +75,7 @@ _HOME = {
         "TabulatedDashpot",
         "TabulatedSpring",
         "ViscoelasticSpring",
+        "viscoelastic_layer",
     ),
     "doubtful": ("DoubtfulValue",),
     "drives": ("Force", "Gravity", "ImposedVelocity", "InitialEquilibrium", "InitialState", "InitialVelocity"),

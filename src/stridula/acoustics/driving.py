@@ -128,7 +128,9 @@ def driving(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = None
     )
     flat, samples = assemble(system), normal.shape[1]
     if flat.springs.bends:
-        raise ArgumentError("system", "have linear springs and dashpots, from whose forces its motion follows", got="nonlinear ones")
+        raise ArgumentError(
+            "system", "have linear springs and dashpots, from whose forces its motion follows", got="nonlinear ones"
+        )
     if any(map(held_motions, system.connections)):
         words = "have no rigid joint, whose forces are in no record: stiff springs may take its place"
         raise ArgumentError("system", words, got="one")

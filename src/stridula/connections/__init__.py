@@ -8,6 +8,7 @@ from ..histories import History
 from .dashpots import TabulatedDashpot
 from .elements import elements_of, held_motions
 from .ends import ends, unit
+from .layers import viscoelastic_layer
 from .linear import Dashpot, Spring
 from .nonlinear import CubicSpring, NonlinearSpring, TabulatedSpring
 from .rigid import Bushing, RigidJoint
@@ -30,6 +31,7 @@ __all__ = [
     "held_motions",
     "pushes",
     "unit",
+    "viscoelastic_layer",
 ]
 
 Connection = Spring | Dashpot | NonlinearSpring | TabulatedDashpot | ViscoelasticSpring | Bushing | RigidJoint
