@@ -121,6 +121,7 @@ figure.savefig("brake-loop-time.png", dpi=110)
 # ``stridula report`` does the same with two scenarios. The runs are those above.
 
 options = {"sound": False, "effects": False, "check": False, "values": [0.15, 0.3, FRICTION]}
-page = st.report(runs[0.0, FRICTION], runs[least, FRICTION], key="friction.coefficient", **options)
+titles = ["Brake as it is", f"Brake with {1e3 * least:.0f} g on its upper pad"]
+page = st.report(runs[0.0, FRICTION], runs[least, FRICTION], titles=titles, key="friction.coefficient", **options)
 page.save("brake-loop.html")
 print(f"{len(page.html) / 1e6:.1f} MB on {' and '.join(page.titles)}")

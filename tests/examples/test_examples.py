@@ -181,6 +181,7 @@ def check_brake_loop(names: Mapping[str, Any], printed: str, folder: Path) -> No
     page = (folder / "brake-loop.html").read_text(encoding="utf-8")
     assert page == names["page"].html
     assert page.count("growth in time") >= 1
+    assert names["page"].titles == ("Brake as it is", f"Brake with {1e3 * least:.0f} g on its upper pad")
     for name in ("growth", "time"):
         assert (folder / f"brake-loop-{name}.png").read_bytes().startswith(b"\x89PNG")
 

@@ -164,6 +164,18 @@ def test_a_record_of_a_body_with_a_mesh_may_be_reported():
     assert "an array of" in page.html
 
 
+def test_designs_have_the_titles_that_are_given():
+    options = {"run": False, "sound": False, "effects": False, "check": False}
+    alone = st.report("belt", titles=["Mine"], **options)
+    assert alone.titles == ("Mine",)
+    assert "<title>Mine" in alone.html
+    pair = st.report("belt", "belt", titles=["Soft", "Hard"], **options)
+    assert pair.titles == ("Soft", "Hard")
+    for wrong in ("ab", ["Soft"], ["Soft", ""], ["Soft", 2]):
+        with pytest.raises(ValueError, match="titles must have a title for each design, 2, got"):
+            st.report("belt", "belt", titles=wrong, **options)
+
+
 def test_sections_that_do_not_apply_say_so():
     html = st.report("belt", duration=0.5, check=False).html
     assert "None: no body of the system radiates sound." in html

@@ -11,7 +11,7 @@ import xarray as xr
 
 from ..arrays import Array
 from ..bars.line_bars import Show
-from ..checks import by_key, count, instance
+from ..checks import ArgumentError, by_key, count, instance
 from ..disk import check_ending, check_writable, write
 from ..integration.bars import bar_if, told_of_time
 from ..linear.given import Status, Velocity
@@ -72,6 +72,7 @@ def report(
     source: str | Path | xr.Dataset | System,
     other: str | Path | xr.Dataset | System | None = None,
     *,
+    titles: Sequence[str] | None = None,
     overrides: Mapping[str, Any] | None = None,
     duration: float | str | None = None,
     key: str = FRICTION,
@@ -101,6 +102,8 @@ def report(
         A scenario, as for `load_scenario`; a record, whose run is shown and not computed again; or a system.
     other : optional
         A second design. Words that differ are marked.
+    titles : sequence of str, optional
+        A title for each design, in place of that of its scenario.
     overrides : mapping, optional
         Values to set by key, in both.
     duration : float or str, optional
@@ -175,11 +178,11 @@ def report(
         velocity=velocity,
     )
     designs = [design_of(one, options) for one in (source, other) if one is not None]
+    named = _titles(designs) if titles is None else _given(titles, len(designs))
     with bar_if(progress, "report") as show:
         pictures = Pictures()
         sections = [sections_of(design, pictures, show) for design in designs]
-        titles = _titles(designs)
-        return Report(titles, page_of(titles, sections))
+        return Report(named, page_of(named, sections))
 
 
 def sections_of(design: Design, pictures: Pictures, show: Show) -> list[Section]:
@@ -210,6 +213,13 @@ def sections_of(design: Design, pictures: Pictures, show: Show) -> list[Section]
 
 def _words(make: Any) -> str:
     return str(make.__name__).removesuffix("_section")
+
+
+def _given(titles: Sequence[str], number: int) -> tuple[str, ...]:
+    """Return given titles, one for each design."""
+    if isinstance(titles, str) or len(titles) != number or not all(isinstance(one, str) and one for one in titles):
+        raise ArgumentError("titles", f"have a title for each design, {number}", titles)
+    return tuple(titles)
 
 
 def _titles(designs: Sequence[Design]) -> tuple[str, ...]:
