@@ -120,13 +120,14 @@ def growing():
 
 
 def touching():
-    """Random pairs of masses that touch the stop in a periodic motion."""
+    """Random pairs of masses that touch the stop in a periodic motion: a stable one, which others do not leave."""
     for seed in range(100):
         try:
-            if stopped(seed).cycle().open < 1.0:
-                yield seed
+            known = stopped(seed).cycle()
         except NotPeriodic:
             continue
+        if known.open < 1.0 and np.abs(known.multipliers).max() < 1.0:
+            yield seed
 
 
 def compare(system, known) -> None:
