@@ -250,6 +250,20 @@ def test_a_dashpot_of_a_body_that_is_carried_along_is_refused_in_linear_theory()
         st.simulate(system, 0.1)
 
 
+def test_a_dashpot_of_a_body_beside_one_that_is_carried_along_is_allowed():
+    """A mass that sticks to a belt moves with it; the other one slides, on a spring and a dashpot."""
+    still, carried = st.PointMass(1.0, "still"), st.PointMass(1.0, "carried")
+    contacts = [
+        st.PointContact(still.centre, FAST, friction=st.Coulomb(0.2), name="still"),
+        st.PointContact(carried.centre, st.RigidTrack(velocity=0.1), friction=st.Coulomb(0.9), name="carried"),
+    ]
+    table = {"velocity": [-1.0, 0.0, 1.0], "force": [-1.0, 0.0, 5.0]}
+    joints = [st.Spring(still.centre, stiffness=100.0), st.TabulatedDashpot(still.centre, **table)]
+    drives = [st.Force(body.centre, y=-10.0) for body in (still, carried)]
+    theory = st.sliding_stability(st.System(contacts, drives, joints), status=["sliding", "sticking"])
+    assert float(theory["growth_rate"].max()) == pytest.approx(-0.5 * 3.0, rel=1e-9)
+
+
 def test_energy_of_a_cycle_is_the_area_of_the_table():
     """Under an imposed amplitude the loss of a cycle is the integral of force over displacement."""
     mass, stiffness = st.PointMass(1e5), 1e5 * (2.0 * np.pi) ** 2

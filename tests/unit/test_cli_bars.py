@@ -8,6 +8,7 @@ import sys
 import numba
 import numpy as np
 import pytest
+from numba.core import event
 from rich.progress import Progress
 
 import stridula as st
@@ -71,6 +72,17 @@ def test_the_time_of_compiling_is_that_of_last_time(said, tmp_path, monkeypatch)
         for _ in range(3):
             compiled()
     assert said == [bars.COMPILING + time for time in ("a minute or two", "42 s last time", "a moment")]
+
+
+def test_a_compilation_that_began_before_the_bar_has_no_time(said, tmp_path, monkeypatch):
+    """One in another thread may be under way as a bar begins: its end is none of the bar's."""
+    monkeypatch.setenv("STRIDULA_CACHE_DIR", str(tmp_path))
+    with event.trigger_event("numba:compile", {"dispatcher": numba.njit(lambda: 1), "args": ()}):
+        listening = bars.bar("squeal")
+        listening.__enter__()
+    listening.__exit__(None, None, None)
+    assert said == []
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_run_that_compiles_nothing_does_not_report_compiling(stridula, said):

@@ -204,8 +204,13 @@ def _envelope(values: Array, interval: float, smoothing: float, lowest_tone: flo
     """Return the root mean square of a vibration above the lowest tone over a centred window."""
     filtered = scipy.signal.butter(4, lowest_tone, "highpass", fs=1.0 / interval, output="sos")
     above_tone = scipy.signal.sosfiltfilt(filtered, values - values.mean())
-    width = max(1, 2 * round(smoothing / interval / 2.0) + 1)
-    return np.sqrt(np.maximum(moving_mean(above_tone**2, width), 0.0))
+    return _moving_size(above_tone, interval, smoothing)
+
+
+def _moving_size(values: Array, interval: float, window: float) -> Array:
+    """Return the root mean square over a centred window [s]."""
+    width = max(1, 2 * round(window / interval / 2.0) + 1)
+    return np.sqrt(np.maximum(moving_mean(values**2, width), 0.0))
 
 
 def _lasting(values: Array, interval: float, heard: Frames, lowest_tone: float) -> float:
@@ -222,12 +227,12 @@ def _lasting_cycles(values: Array, interval: float, frequency: float) -> float:
     """Return the margin by which slow cycles do not die away from the beginning on, in factors of two."""
     if not frequency > 0.0:
         return math.inf
-    smoothing, about = CYCLES / frequency, values - values.mean()
-    level = np.sqrt(np.maximum(moving_mean(about**2, max(1, 2 * round(smoothing / interval / 2.0) + 1)), 0.0))
+    smoothing = CYCLES / frequency
+    level = _moving_size(values, interval, smoothing)
     if np.argmax(level) >= BEGINNING * level.size:
         return math.inf
     half = values.size // 2
-    growth = math.sqrt(float(np.mean(about[half:] ** 2)) / float(np.mean(about[:half] ** 2)))
+    growth = math.sqrt(float(np.mean(values[half:] ** 2)) / float(np.mean(values[:half] ** 2)))
     return max(above(growth, KEPT), _sustained(level, interval, smoothing))
 
 
@@ -259,8 +264,7 @@ def _recurrence(values: Array, interval: float, lowest_tone: float) -> tuple[flo
     The envelope shows cycles whose vibration starts anew each time; that of one that recurs itself has twice its
     frequency.
     """
-    width = max(1, 2 * round(0.25 / (lowest_tone * interval) / 2.0) + 1)
-    size = np.sqrt(np.maximum(moving_mean(values**2, width), 0.0))
+    size = _moving_size(values, interval, 0.25 / lowest_tone)
     own, found = _cycle(values, interval, lowest_tone), _cycle(size - size.mean(), interval, lowest_tone)
     is_twice = own[0] >= RECURS and abs(found[1] / own[1] - 2.0) < TWICE
     return own if is_twice else max(own, found, key=lambda pair: pair[0])

@@ -148,9 +148,10 @@ class _Compilations(event.Listener):
             self.begins(_time_in_words(self.here.name))
 
     def on_end(self, event: event.Event) -> None:
-        """Keep the time of a compilation that is complete."""
-        self.here.under_way = max(getattr(self.here, "under_way", 0) - 1, 0)
-        if not self.here.under_way:
+        """Keep the time of a compilation that is complete; one that began before the listener did has none."""
+        under_way = getattr(self.here, "under_way", 0)
+        self.here.under_way = max(under_way - 1, 0)
+        if under_way == 1:
             keep(self.here.name, {"seconds": np.array(clock.perf_counter() - self.here.began)})
 
 

@@ -162,8 +162,10 @@ def _braked(structure: Structure, velocity: Array) -> Array:
         If a dashpot by a table takes part in it.
     """
     springs = structure.arrays.springs
-    moved = springs.rows[[bend.of_rate for bend in springs.bends]] @ velocity if springs.bends else velocity[:0]
-    if moved.any():
+    rows = springs.rows[np.array([bend.of_rate for bend in springs.bends], dtype=bool)]
+    # What follows nothing has velocities of rounding alone.
+    rounding = UNMOVED * np.linalg.norm(rows, axis=1) * np.linalg.norm(velocity)
+    if (np.abs(rows @ velocity) > rounding).any():
         words = "be linear where they brake a steady motion of bodies"
         raise ArgumentError("connections", words, got="a tabulated dashpot of a body that a contact carries along")
     return np.asarray(structure.damping @ velocity)
