@@ -162,7 +162,9 @@ def _braked(structure: Structure, velocity: Array) -> Array:
         If a dashpot by a table takes part in it.
     """
     springs = structure.arrays.springs
-    rows = springs.rows[np.array([bend.of_rate for bend in springs.bends], dtype=bool)]
+    dashpots = [number for number, bend in enumerate(springs.bends) if bend.of_rate]
+    # Systems without residual shapes have other rows, and no tables.
+    rows = springs.rows[dashpots] if dashpots else np.zeros((0, len(velocity)))
     # What follows nothing has velocities of rounding alone.
     rounding = UNMOVED * np.linalg.norm(rows, axis=1) * np.linalg.norm(velocity)
     if (np.abs(rows @ velocity) > rounding).any():
