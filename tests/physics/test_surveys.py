@@ -88,6 +88,34 @@ def test_runs_without_vibration_at_the_end_are_reported(friction, longest, optio
         assert np.isnan(found.tone_frequency).all()
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_a_mode_has_left_linear_theory_once_its_mass_can_stick_and_not_before(seed):
+    """A mass on a belt under linear weakening vibrates linearly until it stops on the belt, after a known time."""
+    random = np.random.default_rng(seed)
+    frequency, growth = 10.0 ** random.uniform(-1.0, 2.0), random.uniform(0.01, 0.1)
+    growth *= frequency
+    mass, belt = st.PointMass(1.0), st.RigidTrack(velocity=1.0)
+    law, load = st.LinearWeakening(0.9, slope=0.2), 2.0 * growth / 0.2
+    spring = st.Spring(mass.centre, stiffness=(2.0 * np.pi * frequency) ** 2)
+
+    def system(load):
+        return st.System([st.PointContact(mass.centre, belt, friction=law)], [st.Force(mass.centre, y=-load)], [spring])
+
+    # Its slip velocity swings by 1/1000 of that of the belt at the start.
+    stops = np.log(1e3) / growth
+    short = (random.uniform(0.45, 4.0) / (frequency * stops) for _ in range(4))
+    for share, left in [*((one, 0.0) for one in short), (random.uniform(0.02, 0.9), 0.0), (0.9, 0.0), (1.3, 1.0)]:
+        found = st.squeal_survey(system, {"load": [load]}, duration=share * stops, amplitude=1e-3, progress=False)
+        assert found.message.item() == ""
+        assert found.reached.item() == left, (frequency, growth, share)
+        assert (found.fate.item() == "not reached") == (left == 0.0)
+
+
+def test_a_run_of_few_samples_is_refused_in_words():
+    found = st.squeal_survey(flutter, {"friction": [0.9]}, longest=1e-6)
+    assert "longest must last 8 samples" in found.message.item()
+
+
 def test_a_run_that_leaves_its_track_is_reported():
     found = st.squeal_survey("weak-pressure", [{"friction": 0.9}], overrides={"contact.at": 1.6285}).squeeze()
     assert found.fate.item() == "off the track"

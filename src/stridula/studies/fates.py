@@ -35,6 +35,8 @@ VIBRATES = (LIVES, JOINS, CHANGES)
 PERIODS, SHORTEST_WINDOW = 100.0, 0.1
 # Time in which a limit cycle settles once contacts open, stick or slip, in units of 1 / growth.
 SETTLING = 5.0
+# Fewest samples of a run.
+FEWEST_SAMPLES = 8
 # Number of samples recorded in a period of the highest mode of linear theory, if no sound is computed.
 SAMPLES = 20.0
 # Time after which a limit cycle is searched, once contacts open, stick or slip, in units of 1 / growth.
@@ -43,6 +45,8 @@ SEARCHED = 2.0
 STEADY = 1.25
 # A motion has left linear theory if it grows by less than this fraction of the growth there.
 BENT = 0.25
+# Largest relative error of a swing due to periods that are no whole number of samples, in samples over the window.
+UNEVEN = 4.0
 # A vibration has died if its swing is below the first value, and below the second relative to the largest swing of the
 # run; number of pieces compared.
 DEAD, FADED, PIECES = 0.01, 0.1, 20
@@ -154,6 +158,9 @@ class Runs:
             raise ArgumentError("mode", "move a contact point to be simulated", got=f"{number}, which moves none")
         start = replace(self.start, mode=number, amplitude=self.options.amplitude * reach)
         given, longest = self.options.duration, self.options.longest
+        if (given or longest) * self.sample_rate < FEWEST_SAMPLES:
+            words = f"last {FEWEST_SAMPLES} samples, {FEWEST_SAMPLES / self.sample_rate:.3g} s, or longer"
+            raise ArgumentError("duration" if given else "longest", words, given or longest)
         if given:
             return self._ended(self.simulate(start, given), number, None)
         run = self.simulate(start, min(longest, self._time(number, SEARCHED, 1)))
@@ -243,8 +250,13 @@ class Runs:
         shares = last(run, 2.0 * window)["status_share"].values
         if bool(((shares > 0.0) & (shares < 1.0)).any() or np.ptp(shares, axis=0).any()):
             return True
+        # Swings of whole periods grow like the mode, up to the rounding of a period to samples.
+        spans = self._span(run, number)
+        grown = float(self.rest.exponents[number].real) * spans
+        if spans <= 0.0 or (1.0 - BENT) * grown < UNEVEN * float(run.attrs["sample_interval"]) / spans:
+            return False
         before, after = self.swings(run, number)
-        return after > 0.0 and np.log(after / before) < BENT * float(self.rest.exponents[number].real) * window
+        return after > 0.0 and np.log(after / before) < BENT * grown
 
     def is_steady(self, run: xr.Dataset, number: int) -> bool:
         """Return whether the swings of a run in its last two windows are similar."""
@@ -260,9 +272,14 @@ class Runs:
 
     def swings(self, run: xr.Dataset, number: int) -> tuple[float, float]:
         """Return the swings in the last two windows of a run [1]."""
-        motion, window = relative(run, self.rest), self.window(run, number)
-        samples = max(1, round(window / float(run.attrs["sample_interval"])))
+        motion, lasts = relative(run, self.rest), self._span(run, number) or self.window(run, number)
+        samples = max(1, round(lasts / float(run.attrs["sample_interval"])))
         return swing(motion[-2 * samples : -samples]), swing(motion[-samples:])
+
+    def _span(self, run: xr.Dataset, number: int) -> float:
+        """Return the time of the whole periods of a mode in a window [s], 0 if it is shorter than one."""
+        window, frequency = self.window(run, number), float(self.rest.exponents[number].imag) / (2.0 * np.pi)
+        return float(np.floor(window * frequency)) / frequency if frequency > 0.0 else window
 
     def _time(self, number: int, settling: float, windows: int) -> float:
         """Return the time in which a mode grows, settles and is measured [s]."""
