@@ -84,6 +84,7 @@ _HOME = {
     "system": ("System",),
     "records": (
         "Acceleration",
+        "ConnectionForce",
         "Displacement",
         "ModalDisplacement",
         "ModalMotion",

@@ -131,6 +131,7 @@ from .integration import Progress as Progress
 from .integration import simulate as simulate
 from .integration import simulate_many as simulate_many
 from .records import Acceleration as Acceleration
+from .records import ConnectionForce as ConnectionForce
 from .records import Displacement as Displacement
 from .records import ModalDisplacement as ModalDisplacement
 from .records import ModalMotion as ModalMotion

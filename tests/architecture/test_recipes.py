@@ -69,8 +69,8 @@ END = """    if law.code == at.LINEAR_WEAKENING:
 LAW_STEPS = (
     (
         "_kernels/layout/columns.py",
-        f"SLIP = range({len(CODES)})\n",
-        f"SLIP, TRIAL_WEAKENING = range({len(CODES) + 1})\n",
+        f"    SLIP,\n) = range({len(CODES)})\n",
+        f"    TRIAL_WEAKENING,\n    SLIP,\n) = range({len(CODES) + 1})\n",
     ),
     (
         "_kernels/layout/laws.py",

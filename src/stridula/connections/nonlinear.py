@@ -56,6 +56,12 @@ class Bend:
         smooth = self.constant + self.linear * stretch + self.cubic * stretch**3
         return float(smooth + self.right @ above + self.left @ below)
 
+    def pulls(self, stretch: Array) -> Array:
+        """Return the pulls at several stretches [N]."""
+        above, below = self._from_kinks(stretch[..., None])
+        smooth = self.constant + self.linear * stretch + self.cubic * stretch**3
+        return np.asarray(smooth + above @ self.right + below @ self.left)
+
     def stiffness(self, stretch: float) -> float:
         """Return the change of the pull with the stretch [N/m]."""
         above, below = self._from_kinks(stretch)
@@ -81,7 +87,7 @@ class Bend:
         ends = self.place[0] - 1.0, self.place[-1] + 1.0
         return max(self.stiffness(one) for one in (*ends, *(self.place[1:] + self.place[:-1]) / 2.0))
 
-    def _from_kinks(self, stretch: float) -> tuple[Array, Array]:
+    def _from_kinks(self, stretch: float | Array) -> tuple[Array, Array]:
         """Return the stretch above each kink, and below it."""
         return np.maximum(stretch - self.place, 0.0), np.minimum(stretch - self.place, 0.0)
 

@@ -289,7 +289,7 @@ def _kind(arrays: Arrays, most_modes: int | None) -> Hashable | None:
         (one.bending, one.axial, len(one.fixed), _waves(one), _law(one), one.contact.layers_of_heat)
         for one in flat.contacts
     )
-    probes = tuple(type(probe) for probe in arrays.probes), len(flat.probes)
+    probes = tuple(one.form for one in flat.probes)
     pushed = len(flat.loads), len(flat.springs.bends)
     return flat.mode_count, flat.coupled, contacts, _turned(flat), pushed, probes
 

@@ -216,6 +216,7 @@ class March:
         self.probe_count = len(first.probes.kinds)
         self.used = sorted({j for one in blocks for j in one.used})
         self.probes = self._probes([one.probes for one in blocks])
+        self.probed = [one.probes for one in blocks]
         self.room: tuple[Array, ...] = (aligned(0, 0),)
         self.put(states)
 
@@ -377,8 +378,10 @@ class March:
         energies, record = energies.reshape(samples, -1, runs), record.reshape(samples, self.contact_count, -1, runs)
         raw = raw.reshape(steps, -1, runs)
         return [
-            Chunk(energies[..., run], record[..., run], raw[..., run], int(stops[0, run]), int(stops[1, run]))
-            for run in range(self.given)
+            Chunk(
+                energies[..., run], record[..., run], probed.summed(raw[..., run]), *stops[:2, run].astype(int).tolist()
+            )
+            for run, probed in zip(range(self.given), self.probed, strict=False)
         ]
 
     def _march(self, imposed: Imposed, records: Records) -> None:

@@ -51,9 +51,9 @@ class Settings:
         Samples per second to record [Hz]; with a step given, the nearest rate at which a sample is a whole number
         of steps.
     probes : sequence of probes, optional
-        Further quantities to record: Displacement, Velocity, Acceleration, Reaction, SupportForce, ModalDisplacement,
-        ModalVelocity or ModalMotion; the acceleration of the track's centre along y if left out and the track is a
-        beam.
+        Further quantities to record: Displacement, Velocity, Acceleration, Reaction, SupportForce, ConnectionForce,
+        ModalDisplacement, ModalVelocity or ModalMotion; the acceleration of the track's centre along y if left out and
+        the track is a beam.
     contact_solve : GaussSeidel, optional
         Settings of the simultaneous solution of several contacts; a single contact is solved exactly.
     surface_rate : float or str, optional

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,10 +14,12 @@ from .._kernels.modes.springs import STIFF
 from ..arrays import Array
 from ..bodies.paths import Path
 from ..checks import ArgumentError, at_most
+from ..connections.nonlinear import Bend
 from .assembly import Assembly
 from .contact_rows import ContactRows
 from .heating import HeatBlocks, heat_blocks
 from .own_laws import law_of_march, of_one_width
+from .probe_rows import ProbeRows
 from .schemes import Scheme
 from .springs import SpringRows
 from .stepping import Stepping
@@ -291,26 +293,72 @@ class ProbeBlocks:
         Shares of the signals.
     contact : ndarray, shape (probes, rows)
         Shares of the normal and tangential forces.
+    sums : tuple of Part, optional
+        The probe that each row is a part of; empty if each is a probe of its own.
     """
 
     kinds: Array
     rows: Array
     direct: Array
     contact: Array
+    sums: tuple[Part, ...] = ()
+
+    def summed(self, raw: Array) -> Array:
+        """Return values of the rows at steps as those of the probes, shape (steps, probes)."""
+        if not self.sums:
+            return raw
+        found = np.zeros((len(raw), self.sums[-1].probe + 1))
+        for values, part in zip(raw.T, self.sums, strict=True):
+            found[:, part.probe] += values if part.bend is None else part.share * part.bend.pulls(values)
+        return found
+
+
+class Part(NamedTuple):
+    """A row of a probe.
+
+    Attributes
+    ----------
+    probe : int
+        Number of the probe.
+    kind : int
+        Whether the row records positions, centred velocities or second differences.
+    row : ndarray, shape (modes,)
+        Row on modal motion.
+    bend : Bend or None
+        Pull of a nonlinear spring over the row; None if the row itself counts.
+    share : float
+        Share of the pull [1].
+    """
+
+    probe: int
+    kind: int
+    row: Array
+    bend: Bend | None = None
+    share: float = 1.0
 
 
 def probe_blocks(arrays: Assembly, step: float) -> ProbeBlocks:
     """Return the probes as arrays for the march."""
-    count = len(arrays.probes)
+    parts = [part for number, probe in enumerate(arrays.probes) for part in _parts(number, probe, arrays.springs)]
+    count, first = len(parts), {part.probe: k for k, part in reversed(list(enumerate(parts)))}
     rows, kinds = np.zeros((count, arrays.mode_count)), np.zeros(count, dtype=np.int64)
     direct, contact_rows = np.zeros((count, len(arrays.signals))), sum(len(one.fixed) for one in arrays.contacts)
     contact = np.zeros((count, contact_rows))
     scale = np.array([1.0, 0.5 / step, 1.0 / step**2])
-    for p, probe in enumerate(arrays.probes):
-        kinds[p] = np.argmax(probe.rows.any(axis=1))
-        rows[p] = probe.rows[kinds[p]] * scale[kinds[p]]
-        direct[p], contact[p] = probe.direct, probe.contact
-    return ProbeBlocks(kinds, rows, direct, contact)
+    for k, part in enumerate(parts):
+        kinds[k], rows[k] = part.kind, part.row * scale[part.kind]
+    for number, probe in enumerate(arrays.probes):
+        direct[first[number]], contact[first[number]] = probe.direct, probe.contact
+    has_sums = count > len(arrays.probes) or any(part.bend is not None for part in parts)
+    return ProbeBlocks(kinds, rows, direct, contact, tuple(parts) if has_sums else ())
+
+
+def _parts(number: int, probe: ProbeRows, springs: SpringRows) -> list[Part]:
+    """Return the rows of a probe: the first takes its shares of signals and of contact forces."""
+    kinds = np.flatnonzero(probe.rows.any(axis=1)).tolist() or [0]
+    bends = [(springs.bends[k], springs.rows[k], share) for k, share in probe.springs.items()]
+    own = [Part(number, kind, probe.rows[kind]) for kind in kinds]
+    return own + [Part(number, int(bend.of_rate), row, bend, share) for bend, row, share in bends]
 
 
 @dataclass(frozen=True)

@@ -144,6 +144,15 @@ class Coordinates:
         """Return the drive of the modes by a uniform acceleration of a body along x, y and z, shape (3, modes)."""
         return _in_space(self.blended(body, self.modes(body).translation))
 
+    def body_translation(self, body: Any) -> Array:
+        """Return the same on the coordinates of the bodies, shape (3, modes)."""
+        return _in_space(self.full(body, self.modes(body).translation))
+
+    def on_march(self, rows: Array) -> Array:
+        """Return rows on the coordinates of the bodies as rows on those of the march, shape (..., modes)."""
+        size = len(self.blend)
+        return np.concatenate([rows[..., :size] @ self.blend, rows[..., size:]], axis=-1) if size else rows
+
     def motion(self, point: BodyPoint, motion: Motion) -> Array:
         """Return the row of a displacement or rotation at a point on the coordinates of the bodies, shape (modes,)."""
         if not motion.turns:
@@ -201,6 +210,12 @@ class Coordinates:
         for numbers, modes in self.joints:
             found[numbers] = found[numbers].all() | (modes.stiffness == 0.0)
         return found & ~self.massless
+
+    @cached_property
+    def of_bodies(self) -> tuple[Array, Array]:
+        """Stiffness and damping matrix of joined bodies and their connections, before rigid joints."""
+        own, stiffness, dissipation = _matrices(self)
+        return stiffness + np.diag(own), dissipation
 
     @property
     def matrices(self) -> tuple[Array, Array]:

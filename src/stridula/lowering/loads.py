@@ -25,10 +25,16 @@ class Load:
         Modal forces for a unit signal.
     root : ndarray, shape (3,)
         Its resultant about the slider's root: along x and y [N], moment [N m].
+    own : ndarray, shape (modes,)
+        The same modal forces on the coordinates of the bodies, before rigid joints.
+    history : Constant, Ramp, Harmonic or Sampled
+        Its signal; None for the acceleration of a root.
     """
 
     modal: Array
     root: Array
+    own: Array
+    history: History | None = None
 
 
 def _factor(history: History) -> Signal:
@@ -39,12 +45,13 @@ def loads_of(system: System, coordinates: Coordinates) -> tuple[list[Load], Sign
     """Return the loads, merged by their histories, the signals, and the histories."""
     by_history: dict[History, Load] = {}
 
-    def add(history: History, modal: Array, root: Array) -> None:
+    def add(history: History, modal: Array, root: Array, own: Array) -> None:
         if history in by_history:
             by_history[history].modal += modal
             by_history[history].root += root
+            by_history[history].own += own
         else:
-            by_history[history] = Load(modal, root)
+            by_history[history] = Load(modal, root, own, history)
 
     inertia = _inertia(system)
     for drive in system.drives:
@@ -53,7 +60,8 @@ def loads_of(system: System, coordinates: Coordinates) -> tuple[list[Load], Sign
             add(history, *_force(point, components, coordinates))
         if drive.fall is not None:
             modal = np.sum([drive.fall @ coordinates.translation(body) for body in coordinates.order], axis=0)
-            add(Constant(), modal, inertia @ drive.fall[:2])
+            own = np.sum([drive.fall @ coordinates.body_translation(body) for body in coordinates.order], axis=0)
+            add(Constant(), modal, inertia @ drive.fall[:2], own)
     for history, point, components in (push for one in system.connections for push in pushes(one)):
         add(history, *_force(point, components, coordinates))
     felt = {history: load for history, load in by_history.items() if load.modal.any() or load.root.any()}
@@ -74,7 +82,9 @@ def loads_of(system: System, coordinates: Coordinates) -> tuple[list[Load], Sign
         return velocity * (history.factor(time + step / 2.0) - history.factor(time - step / 2.0)) / step
 
     if imposed and history.settled != 0.0:
-        loads.append(Load(-coordinates.translation(imposed.point.body)[0], -inertia[:, 0]))
+        body = imposed.point.body
+        own = -coordinates.body_translation(body)[0]
+        loads.append(Load(-coordinates.translation(body)[0], -inertia[:, 0], own))
         factors.append(acceleration)
     return loads, Signals(tuple(factors), displacement, speed, acceleration), tuple(felt)
 
@@ -88,9 +98,9 @@ def _inertia(system: System) -> Array:
     return inertia
 
 
-def _force(point: BodyPoint, components: Array, coordinates: Coordinates) -> tuple[Array, Array]:
+def _force(point: BodyPoint, components: Array, coordinates: Coordinates) -> tuple[Array, Array, Array]:
     slider = coordinates.system.slider
     root = np.zeros(3)
     if point.body == slider and has_root(slider):
         root = slider.root_lever(point.position) @ components[:2]
-    return components @ coordinates.trace(point), root
+    return components @ coordinates.trace(point), root, components @ coordinates.body_trace(point)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import singledispatch
 from typing import Any
 
@@ -11,7 +12,8 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, brief
 from ..connections import ends
-from ..records.probes import Probe, Reaction, SupportForce
+from ..records.probes import ConnectionForce, Probe, Reaction, SupportForce
+from .connection_forces import force_on_first
 from .coordinates import Coordinates
 from .loads import Load
 
@@ -30,6 +32,8 @@ class ProbeRows:
         Shares of the imposed displacement, velocity and acceleration.
     contact : ndarray, shape (rows,)
         Shares of the normal and the tangential forces of all contacts.
+    springs : dict
+        Shares of the pulls of nonlinear springs and dashpots beyond their linear parts, by their number.
     is_of_body : bool
         Whether it is from a probe of all modes of a body.
     """
@@ -38,7 +42,13 @@ class ProbeRows:
     loads: Array
     imposed: Array
     contact: Array
+    springs: Mapping[int, float] = field(default_factory=dict)
     is_of_body: bool = False
+
+    @property
+    def form(self) -> tuple[bytes, tuple[int, ...]]:
+        """A key that is equal for probes with the same rows in a march."""
+        return self.rows.any(axis=1).tobytes(), tuple(self.springs)
 
     @property
     def direct(self) -> Array:
@@ -48,6 +58,8 @@ class ProbeRows:
 
 def probe_rows(probe: Probe, coordinates: Coordinates, loads: list[Load]) -> list[ProbeRows]:
     """Return the rows of a probe, several for one of all modes, checked against the system."""
+    if isinstance(probe, ConnectionForce) and probe.connection not in coordinates.system.connections:
+        raise ArgumentError("probe", "be on a connection of this system", probe, got=f"one on {probe.connection}")
     if not isinstance(probe, Reaction) and probe.body not in coordinates.system.bodies:
         raise ArgumentError("probe", "be on a body of this system", probe, got=f"one on {brief(probe.body)}")
     blank = ProbeRows(
@@ -80,6 +92,15 @@ def _support_rows(probe: SupportForce, coordinates: Coordinates, loads: list[Loa
     matrix = np.zeros((3, coordinates.size))
     matrix[0] = coordinates.blended(probe.body, probe.body.support_force(probe.end))
     return replace(blank, rows=matrix)
+
+
+@_rows_of.register
+def _connection_rows(
+    probe: ConnectionForce, coordinates: Coordinates, loads: list[Load], blank: ProbeRows
+) -> ProbeRows:
+    number = coordinates.system.connections.index(probe.connection)
+    found = force_on_first(number, probe.share, coordinates, loads)
+    return ProbeRows(found.rows, found.loads, np.zeros(3), found.contact, found.springs)
 
 
 @_rows_of.register

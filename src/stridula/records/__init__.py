@@ -2,6 +2,7 @@
 
 from .probes import (
     Acceleration,
+    ConnectionForce,
     Displacement,
     ModalDisplacement,
     ModalMotion,
@@ -14,6 +15,7 @@ from .probes import (
 
 __all__ = [
     "Acceleration",
+    "ConnectionForce",
     "Displacement",
     "ModalDisplacement",
     "ModalMotion",

@@ -200,5 +200,7 @@ def _of_modes(system: System, bodies: Sequence[Body]) -> dict[str, Any]:
 
 
 def probe_label(probe: Any, system: System) -> str:
-    """Return the label of a probe: body, place and direction."""
+    """Return the label of a probe: body, place and direction, or connection and component."""
+    if hasattr(probe, "label"):
+        return str(probe.label(system))
     return f"{system.body_name(probe.body)} {probe.place}"

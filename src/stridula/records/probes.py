@@ -10,11 +10,15 @@ from ..arrays import Array
 from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, is_track
 from ..bodies.modes import Body
 from ..checks import ArgumentError, choice, count, instance
+from ..connections import CONNECTIONS, Bushing, Connection, RigidJoint, elements_of, held_motions, unit
+from ..connections.elements import DISPLACEMENTS, ROTATIONS, Motion
 from ..declared import Choice, CountFrom0, Way, check_declared
 from ..system import System
 
 DIRECTION = Way(("x", "y", "z", "axial", "transverse"))
 COMPONENTS = ("x", "y", "moment")
+# Motions against which forces and moments of connections act.
+ACTIONS = dict(zip(("x", "y", "z", "moment x", "moment y", "moment z"), DISPLACEMENTS + ROTATIONS, strict=True))
 
 
 class _Probe:
@@ -196,6 +200,64 @@ class SupportForce(_Probe):
 
 
 @dataclass(frozen=True)
+class ConnectionForce(_Probe):
+    """Force of a connection on its first end [N], or its moment [N m]: the signal of a load cell, or that of a bolt.
+
+    The other end feels the opposite. That of a spring is ``-stiffness s``, where s is the displacement of the first end
+    relative to the other: above zero it pushes the first end towards the positive direction. Velocities and
+    accelerations in it are centred differences over two steps. The force of a rigid joint is that which keeps the
+    motions of both bodies equal.
+
+    Parameters
+    ----------
+    connection : Spring, Dashpot, Bushing, RigidJoint or another connection
+        A connection of the system.
+    component : {"x", "y", "z", "moment x", "moment y", "moment z"}, optional
+        Component along or about an axis of the world; along the direction of the connection if left out. Bushings and
+        rigid joints need one.
+    """
+
+    quantity: ClassVar[str] = "connection_force"
+    on: ClassVar[str] = "connection"
+    connection: Connection
+    component: Annotated[str, Choice(tuple(ACTIONS))] | None = None
+
+    def __post_init__(self) -> None:
+        instance("connection", self.connection, CONNECTIONS)
+        check_declared(self)
+        if self.component is None:
+            if isinstance(self.connection, (Bushing, RigidJoint)):
+                words = f"be given for a {self.connection.kind}: one of {', '.join(ACTIONS)}"
+                raise ArgumentError("component", words, self.component)
+        elif not any(self.share(one) for one in self._motions):
+            raise ArgumentError("component", f"be one in which the {self.connection.kind} acts", self.component)
+
+    @property
+    def _motions(self) -> list[Motion]:
+        return [*(one.motion for one in elements_of(self.connection)), *held_motions(self.connection)]
+
+    def share(self, motion: Motion) -> float:
+        """Return the share in it of a force or moment against a motion [1]."""
+        component = Motion(unit(self.connection)) if self.component is None else ACTIONS[self.component]
+        return float(component.way @ motion.way) if motion.turns == component.turns else 0.0
+
+    @property
+    def body(self) -> Body:
+        """Body of the first end."""
+        return self.connection.first.body
+
+    def label(self, system: System) -> str:
+        """Return its label in a record: number, kind and component."""
+        number = system.connections.index(self.connection)
+        return " ".join(filter(None, (f"connections[{number}]", self.connection.kind, self.component)))
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """Keys of its table in a scenario, besides quantity and connection."""
+        return {} if self.component is None else {"component": self.component}
+
+
+@dataclass(frozen=True)
 class _OfMode(_Probe):
     on: ClassVar[str] = "body"
     derivative: ClassVar[int]
@@ -270,7 +332,15 @@ class ModalMotion(_Probe):
 
 
 Probe = (
-    Displacement | Velocity | Acceleration | Reaction | SupportForce | ModalDisplacement | ModalVelocity | ModalMotion
+    Displacement
+    | Velocity
+    | Acceleration
+    | Reaction
+    | SupportForce
+    | ConnectionForce
+    | ModalDisplacement
+    | ModalVelocity
+    | ModalMotion
 )
 PROBES: tuple[type[Probe], ...] = get_args(Probe)
 

@@ -92,6 +92,9 @@ PROBES = {
     "modal_displacement": Variable("modal_displacement", "kg^(1/2) m", "displacement of modes", "low-pass"),
     "modal_velocity": Variable("modal_velocity", "kg^(1/2) m/s", "velocity of modes", "low-pass"),
     "modal_motion": Variable("modal_motion", "kg^(1/2) m/s", "velocities of all modes of bodies", "low-pass"),
+    "connection_force": Variable(
+        "connection_force", "N", "force of connections on their first ends (moments in N m)", "low-pass"
+    ),
     "support_force": Variable("support_force", "N", "force along y on the supports at its ends", "low-pass"),
 }
 # Variables of the equilibrium of linear theory, without free rigid motions.

@@ -451,12 +451,20 @@ class Builder:
     def _probe(self, number: int, table: Tables, system: System) -> Any:
         path = ("simulation", "probes", number)
         made = PROBES[table.pop("quantity")]
-        on = system.slider if made.on == "slider" else self._probed(path, made.on, table)
+        on = self._probed(path, made.on, table, system)
         with self._within(*path):
             return made.from_table(on, **table)
 
-    def _probed(self, path: Place, on: str, table: Tables) -> Any:
-        """Return the body or the point that a probe is on, its first argument."""
+    def _probed(self, path: Place, on: str, table: Tables, system: System) -> Any:
+        """Return the body, the point or the connection that a probe is on, its first argument."""
+        if on == "slider":
+            return system.slider
+        if on == "connection":
+            number, count = table.pop("connection"), len(system.connections)
+            if number >= count:
+                allowed = f"be the number of a connection from 0 to {count - 1}" if count else "be left out"
+                self.problems.append(f"{self.words((*path, 'connection'))} must {allowed}, got {number}")
+            return system.connections[number] if number < count else None
         name = table.pop("body", None) or ("track" if "track" in self.bodies else "slider")
         body = self._named_body((*path, "body"), name)
         return self._point((*path, "point"), body, table.pop("point", None), "tip") if on == "point" else body

@@ -95,6 +95,8 @@ def _number(kind: Number, value: Any) -> float:
 def _of_number(kind: Number) -> Schema:
     limits = {"exclusiveMinimum": kind.above, "minimum": kind.least, "exclusiveMaximum": kind.below}
     number = NUMBER | {word: limit for word, limit in limits.items() if limit is not None}
+    if kind.unit not in UNITS:
+        raise LookupError(f"unit {kind.unit!r} of a declared field must be entered in UNITS of scenarios/quantities.py")
     pattern = rf"^\s*[-+0-9.eE]+\s*({'|'.join(UNITS[kind.unit])})?\s*$"
     return any_of(number, TEXT | {"pattern": pattern, "unit": kind.unit})
 

@@ -51,7 +51,17 @@ MOTIONS = 5
 CONTACT_CONSTANTS = 14
 
 # Laws of friction.
-COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, CURVE, IN_SERIES, LUGRE, AGING, SLIP = range(9)
+(
+    COULOMB,
+    STATIC_KINETIC,
+    STRIBECK,
+    LINEAR_WEAKENING,
+    CURVE,
+    IN_SERIES,
+    LUGRE,
+    AGING,
+    SLIP,
+) = range(9)
 
 # Scalars that each contact carries from step to step: material abscissa of the tip, anchor of the stick, last status,
 # tip's abscissa at the last two steps, last slip and the one before, internal state of the law, forces and gap of the
