@@ -160,9 +160,13 @@ VARIABLE = """    "momentum": Variable("momentum", "kg m/s", "momentum of bodies
     "support_force": """
 PROBE_STEPS = (
     ("records/probes.py", "Probe = (\n", PROBE),
-    ("records/probes.py", "ModalVelocity | ModalMotion\n)", "ModalVelocity | ModalMotion | Momentum\n)"),
+    ("records/probes.py", "    | ModalMotion\n)", "    | ModalMotion\n    | Momentum\n)"),
     ("records/variables.py", '    "support_force": ', VARIABLE),
-    ("lowering/probe_rows.py", "import Probe, Reaction", "import Momentum, Probe, Reaction"),
+    (
+        "lowering/probe_rows.py",
+        "import ConnectionForce, Probe, Reaction",
+        "import ConnectionForce, Momentum, Probe, Reaction",
+    ),
     ("lowering/probe_rows.py", "@_rows_of.register\ndef _support_rows(", ROWS),
     ("records/__init__.py", "    ModalVelocity,\n", "    ModalVelocity,\n    Momentum,\n"),
     ("records/__init__.py", '    "ModalVelocity",\n', '    "ModalVelocity",\n    "Momentum",\n'),

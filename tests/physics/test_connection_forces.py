@@ -209,7 +209,7 @@ def test_what_is_not_determined_is_refused():
         st.ConnectionForce(spring, "y")
     with pytest.raises(ValueError, match="component must be one in which the rigid joint acts, got 'moment z'"):
         st.ConnectionForce(joint, "moment z")
-    with pytest.raises(ValueError, match="component must be given for a rigid joint: one of x, y"):
+    with pytest.raises(ValueError, match="component must be given for a rigid joint that acts in several: one of x, y"):
         st.ConnectionForce(joint)
     with pytest.raises(ValueError, match="connection must be"):
         st.ConnectionForce(mass)

@@ -20,10 +20,10 @@ AXES = ("x", "y", "z")
 class RigidJoint:
     """A joint between two points that lets them move only together, such as a bolt or a weld.
 
-    Its force does no work; `ConnectionForce` records it. Displacements along `axes` are the same at both ends: all three by
-    default, as in a ball joint. With `rotations` so are the rotations about these axes, as in a weld: only beams and
-    rigid bodies with an inertia have rotations at a point. Other bodies are held against turning by joints at several
-    points.
+    Its force does no work; `ConnectionForce` records it. Displacements along `axes` are the same at both ends: all
+    three by default, as in a ball joint. With `rotations` so are the rotations about these axes, as in a weld: only
+    beams and rigid bodies with an inertia have rotations at a point. Other bodies are held against turning by joints at
+    several points.
 
     Parameters
     ----------

@@ -91,8 +91,8 @@ class LiveMarch:
     ----------
     system : System
         The system.
-    probes : sequence of Displacement, Velocity, Acceleration, Reaction, SupportForce, ConnectionForce, ModalDisplacement
-        Quantities to record besides those of the contacts; also ModalVelocity.
+    probes : sequence of Displacement, Velocity, Acceleration, Reaction, SupportForce, ConnectionForce, of modes
+        Quantities to record besides those of the contacts.
     scheme : CentralDifference or ExactModal, optional
         Time scheme; the exact modal one if left out.
     sample_rate : float, optional

@@ -58,8 +58,6 @@ class ProbeRows:
 
 def probe_rows(probe: Probe, coordinates: Coordinates, loads: list[Load]) -> list[ProbeRows]:
     """Return the rows of a probe, several for one of all modes, checked against the system."""
-    if isinstance(probe, ConnectionForce) and probe.connection not in coordinates.system.connections:
-        raise ArgumentError("probe", "be on a connection of this system", probe, got=f"one on {probe.connection}")
     if not isinstance(probe, Reaction) and probe.body not in coordinates.system.bodies:
         raise ArgumentError("probe", "be on a body of this system", probe, got=f"one on {brief(probe.body)}")
     blank = ProbeRows(
@@ -98,6 +96,8 @@ def _support_rows(probe: SupportForce, coordinates: Coordinates, loads: list[Loa
 def _connection_rows(
     probe: ConnectionForce, coordinates: Coordinates, loads: list[Load], blank: ProbeRows
 ) -> ProbeRows:
+    if probe.connection not in coordinates.system.connections:
+        raise ArgumentError("probe", "be on a connection of this system", probe, got=f"one on {probe.connection}")
     number = coordinates.system.connections.index(probe.connection)
     found = force_on_first(number, probe.share, coordinates, loads)
     return ProbeRows(found.rows, found.loads, np.zeros(3), found.contact, found.springs)

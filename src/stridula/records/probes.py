@@ -10,7 +10,7 @@ from ..arrays import Array
 from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, is_track
 from ..bodies.modes import Body
 from ..checks import ArgumentError, choice, count, instance
-from ..connections import CONNECTIONS, Bushing, Connection, RigidJoint, elements_of, held_motions, unit
+from ..connections import CONNECTIONS, Connection, elements_of, held_motions
 from ..connections.elements import DISPLACEMENTS, ROTATIONS, Motion
 from ..declared import Choice, CountFrom0, Way, check_declared
 from ..system import System
@@ -36,6 +36,11 @@ class _Probe:
     def keys(self) -> dict[str, Any]:
         """Keys of its table in a scenario, besides quantity and body."""
         return {}
+
+    def named_in(self, system: System) -> dict[str, Any]:
+        """Return what it is on as keys of its table in a scenario."""
+        on: Any = self
+        return {} if self.on == "slider" else {"body": system.body_name(on.body)}
 
 
 @dataclass(frozen=True)
@@ -213,8 +218,8 @@ class ConnectionForce(_Probe):
     connection : Spring, Dashpot, Bushing, RigidJoint or another connection
         A connection of the system.
     component : {"x", "y", "z", "moment x", "moment y", "moment z"}, optional
-        Component along or about an axis of the world; along the direction of the connection if left out. Bushings and
-        rigid joints need one.
+        Component along or about an axis of the world; along the direction of the connection if left out, which bushings
+        and rigid joints that act in several must not.
     """
 
     quantity: ClassVar[str] = "connection_force"
@@ -226,8 +231,8 @@ class ConnectionForce(_Probe):
         instance("connection", self.connection, CONNECTIONS)
         check_declared(self)
         if self.component is None:
-            if isinstance(self.connection, (Bushing, RigidJoint)):
-                words = f"be given for a {self.connection.kind}: one of {', '.join(ACTIONS)}"
+            if len(self._motions) > 1:
+                words = f"be given for a {self.connection.kind} that acts in several: one of {', '.join(ACTIONS)}"
                 raise ArgumentError("component", words, self.component)
         elif not any(self.share(one) for one in self._motions):
             raise ArgumentError("component", f"be one in which the {self.connection.kind} acts", self.component)
@@ -238,7 +243,7 @@ class ConnectionForce(_Probe):
 
     def share(self, motion: Motion) -> float:
         """Return the share in it of a force or moment against a motion [1]."""
-        component = Motion(unit(self.connection)) if self.component is None else ACTIONS[self.component]
+        component = self._motions[0] if self.component is None else ACTIONS[self.component]
         return float(component.way @ motion.way) if motion.turns == component.turns else 0.0
 
     @property
@@ -246,9 +251,13 @@ class ConnectionForce(_Probe):
         """Body of the first end."""
         return self.connection.first.body
 
+    def named_in(self, system: System) -> dict[str, Any]:
+        """Return the number of its connection as a key of its table in a scenario."""
+        return {"connection": system.connections.index(self.connection)}
+
     def label(self, system: System) -> str:
         """Return its label in a record: number, kind and component."""
-        number = system.connections.index(self.connection)
+        (number,) = self.named_in(system).values()
         return " ".join(filter(None, (f"connections[{number}]", self.connection.kind, self.component)))
 
     @property

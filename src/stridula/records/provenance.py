@@ -22,7 +22,7 @@ from ..drives import Drive
 from ..histories import Constant
 from ..system import System
 from .packed import LONGEST_LIST, PACKED, packed
-from .probes import ConnectionForce, Probe
+from .probes import Probe
 
 # Largest size of the surface of a body that a record keeps for films [bytes].
 LARGEST_DRAWN = 20_000_000
@@ -356,7 +356,8 @@ def _drive(drive: Drive, system: System) -> dict[str, Any]:
 
 
 def _probe(probe: Probe, system: System) -> dict[str, Any]:
-    on: dict[str, Any] = {} if probe.on == "slider" else {"body": system.body_name(probe.body)}
-    if isinstance(probe, ConnectionForce):
-        on = {"connection": system.connections.index(probe.connection)}
-    return {"quantity": probe.quantity, **on, **{key: _value(value) for key, value in probe.keys.items()}}
+    return {
+        "quantity": probe.quantity,
+        **probe.named_in(system),
+        **{key: _value(value) for key, value in probe.keys.items()},
+    }
