@@ -102,6 +102,18 @@ def check_brake_shim(names: Mapping[str, Any], printed: str, folder: Path) -> No
     assert (folder / "brake_shim.png").read_bytes().startswith(b"\x89PNG")
 
 
+def check_wheel_ring(names: Mapping[str, Any], printed: str, folder: Path) -> None:
+    """A heavier ring leaves less growth; runs grow and decay as linear theory says."""
+    growths = [float(growth) for growth in re.findall(r"kg: (\S+) /s", printed)]
+    assert growths[0] == pytest.approx(42.1, rel=0.02)
+    assert growths == sorted(growths, reverse=True)
+    assert growths[-1] < 0.0 < growths[-2]
+    for name, growth, span in (("without a ring", growths[0], slice(20, 40)), ("40 mm", growths[-1], slice(50, 100))):
+        seen = np.polyfit(3e-3 * np.arange(100)[span], np.log(names["peaks"][name][span]), 1)[0]
+        assert seen == pytest.approx(growth, rel=0.1), name
+    assert (folder / "wheel-ring.png").read_bytes().startswith(b"\x89PNG")
+
+
 def check_brake_pad(names: Mapping[str, Any], printed: str, folder: Path) -> None:
     """More friction lets modes of disc and pad grow; the ledger closes, and forces are about those of theory."""
     growing = re.findall(r"^friction (\S+): .*growing modes \[Hz\]: (.+)$", printed, re.MULTILINE)
@@ -287,8 +299,9 @@ CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
     "railway_wheel.py": check_railway_wheel,
     "stick_on_a_plate.py": check_stick_on_a_plate,
     "ten_lines.py": check_ten_lines,
-    "wine_glass.py": check_wine_glass,
     "violin.py": check_violin,
+    "wheel_ring.py": check_wheel_ring,
+    "wine_glass.py": check_wine_glass,
 }
 
 
