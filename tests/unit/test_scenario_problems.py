@@ -103,7 +103,7 @@ def test_every_problem_of_a_file_is_reported(tmp_path):
         "drives.1.axial must be a number in N, mN or kN, got 'x {y}'",
         "material.young must be above 0, got -1",
         "simulation.probes.0.quantity must be one of displacement, velocity, acceleration, reaction, support_force, "
-        "modal_displacement, modal_velocity, modal_motion, "
+        "connection_force, modal_displacement, modal_velocity, modal_motion, "
         "got 'speed'",
         "slider.angle must be finite, got nan",
         "slider.lenght must be one of the known keys material, section, length, angle, elements, damping, "
