@@ -221,3 +221,17 @@ def test_what_is_not_determined_is_refused():
         st.simulate(twice, 0.01, probes=[st.ConnectionForce(joint, "x")])
     # Along y one joint alone acts.
     st.simulate(twice, 0.01, probes=[st.ConnectionForce(joint, "y")])
+    # More joints than the body has motions.
+    held, *more = (st.RigidJoint(mass.centre, axes=("x", "y")) for _ in range(3))
+    bolted = st.System([contact], drives, [held, *more])
+    with pytest.raises(ValueError, match="other joints prevent the same motion, got one on connections"):
+        st.simulate(bolted, 0.01, probes=[st.ConnectionForce(held, "x")])
+
+
+def test_offsets_that_balance_each_other_are_felt_by_their_springs():
+    mass, history = st.PointMass(1.0), st.Ramp(0.1)
+    pair = [st.Spring(mass.centre, stiffness=1e3, offset=sign * 1e-2, history=history) for sign in (1.0, -1.0)]
+    contact = st.PointContact(mass.centre, BELT, friction=st.Coulomb(0.0))
+    system = st.System([contact], [st.Force(mass.centre, y=-10.0)], pair)
+    run = st.simulate(system, 0.2, sample_rate=1e3, probes=[st.ConnectionForce(one) for one in pair])
+    np.testing.assert_allclose(forces(run)[:, -1], [10.0, -10.0], rtol=1e-9)

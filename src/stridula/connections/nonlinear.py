@@ -52,9 +52,7 @@ class Bend:
 
     def pull(self, stretch: float) -> float:
         """Return the pull at a stretch [N]."""
-        above, below = self._from_kinks(stretch)
-        smooth = self.constant + self.linear * stretch + self.cubic * stretch**3
-        return float(smooth + self.right @ above + self.left @ below)
+        return float(self.pulls(np.asarray(stretch)))
 
     def pulls(self, stretch: Array) -> Array:
         """Return the pulls at several stretches [N]."""

@@ -91,8 +91,9 @@ class LiveMarch:
     ----------
     system : System
         The system.
-    probes : sequence of Displacement, Velocity, Acceleration, Reaction, SupportForce, ConnectionForce, of modes
-        Quantities to record besides those of the contacts.
+    probes : sequence of probes
+        Quantities to record besides those of the contacts: Displacement, Velocity, Acceleration, Reaction,
+        SupportForce, ConnectionForce, ModalDisplacement or ModalVelocity.
     scheme : CentralDifference or ExactModal, optional
         Time scheme; the exact modal one if left out.
     sample_rate : float, optional

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -116,9 +115,10 @@ def _picked(rows: Array, wanted: Array) -> Array | None:
     scaled, wanted = rows[acts] / size[acts, None], wanted[acts] / size[acts]
     left, values, right = np.linalg.svd(scaled.T, full_matrices=False)
     kept = values > SHARED * values[0]
-    if np.linalg.norm(right[~kept] @ wanted) > SHARED * np.linalg.norm(wanted):
+    seen = right[kept] @ wanted
+    if np.linalg.norm(wanted - seen @ right[kept]) > SHARED * np.linalg.norm(wanted):
         return None
-    return np.asarray(left[:, kept] @ ((right[kept] @ wanted) / values[kept]))
+    return np.asarray(left[:, kept] @ (seen / values[kept]))
 
 
 def _balance(across: Array, coordinates: Coordinates, loads: list[Load]) -> ForceRows:
@@ -135,17 +135,13 @@ def _balance(across: Array, coordinates: Coordinates, loads: list[Load]) -> Forc
     for point in coordinates.system.contacts:
         # The force on the tip is the normal force along the normal minus the tangential forces along the tangents.
         signs = np.array([1.0] + [-1.0] * (len(point.frame) - 1))
-        tip = point.frame @ (coordinates.body_trace(point.tip)[: point.frame.shape[1]] @ across)
-        touched = 0.0 if point.touched_point is None else point.frame @ _seen(point, coordinates, across)
-        contact.extend(signs * (touched - tip))
+        ends = [(-1.0, point.tip), *([] if point.touched_point is None else [(1.0, point.touched_point)])]
+        moved = np.sum([sign * (coordinates.body_trace(one) @ across) for sign, one in ends], axis=0)
+        contact.extend(signs * (point.frame @ moved[: point.frame.shape[1]]))
     springs = {
         k: pull
         for k, one in enumerate(coordinates.system.connections[number] for number in _bent(coordinates))
         if (pull := float(coordinates.between(one, Motion(unit(one))) @ across))
     }
-    moved = np.array([-float(load.own @ across) for load in loads])
-    return ForceRows(coordinates.on_march(rows), moved, np.array(contact), springs)
-
-
-def _seen(point: Any, coordinates: Coordinates, across: Array) -> Array:
-    return np.asarray(coordinates.body_trace(point.touched_point)[: point.frame.shape[1]] @ across)
+    pushed = np.array([-float(load.own @ across) for load in loads])
+    return ForceRows(coordinates.on_march(rows), pushed, np.array(contact), springs)

@@ -64,7 +64,13 @@ def loads_of(system: System, coordinates: Coordinates) -> tuple[list[Load], Sign
             add(Constant(), modal, inertia @ drive.fall[:2], own)
     for history, point, components in (push for one in system.connections for push in pushes(one)):
         add(history, *_force(point, components, coordinates))
-    felt = {history: load for history, load in by_history.items() if load.modal.any() or load.root.any()}
+    # Offsets of connections that balance each other move nothing, but probes of their forces need them.
+    offsets = {history for one in system.connections for history, *_ in pushes(one)}
+    felt = {
+        history: load
+        for history, load in by_history.items()
+        if load.modal.any() or load.root.any() or history in offsets
+    }
     loads = list(felt.values())
     factors = [_factor(history) for history in felt]
 

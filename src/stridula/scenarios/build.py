@@ -462,7 +462,9 @@ class Builder:
         if on == "connection":
             number, count = table.pop("connection"), len(system.connections)
             if number >= count:
-                allowed = f"be the number of a connection from 0 to {count - 1}" if count else "be left out"
+                allowed = (
+                    f"be a number from 0 to {count - 1}" if count else "be that of a connection, and there are none"
+                )
                 self.problems.append(f"{self.words((*path, 'connection'))} must {allowed}, got {number}")
             return system.connections[number] if number < count else None
         name = table.pop("body", None) or ("track" if "track" in self.bodies else "slider")

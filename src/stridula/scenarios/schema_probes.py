@@ -5,17 +5,16 @@ from __future__ import annotations
 from itertools import groupby
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Field
-
-from ..declared import declared
+from ..declared import Whole, declared
 from ..records import probes
 from . import fields as is_
 from .derived import Keys, one_of, table_of
+from .kinds import Read
 
 *FIRST, LAST = (kind.quantity for kind in probes.PROBES)
 KINDS = f"{', '.join(FIRST)} or {LAST}"
 BODY = "body: slider, track or its name; the track if left out, the slider on a rigid track"
-CONNECTION = "connection: number of the connection, from 0 in the order of the connections"
+CONNECTION = "number of the connection, from 0 in the order of the connections"
 POINT = "point: tip, root, centre, the name of a point or a position [m]; centre or tip if left out"
 # Keys with another name than the argument.
 RENAMED: dict[str, Keys] = {"reaction": {"direction": (Literal[probes.COMPONENTS], "moment", "x, y or moment")}}
@@ -24,7 +23,7 @@ RENAMED: dict[str, Keys] = {"reaction": {"direction": (Literal[probes.COMPONENTS
 def _place(on: str) -> Keys:
     """Return the keys of the place of a probe, none for that of the slider."""
     if on == "connection":
-        return {"connection": (Annotated[int, Field(ge=0)], ..., CONNECTION)}
+        return {"connection": (Annotated[Any, Read(Whole(0))], ..., CONNECTION)}
     body: Keys = {} if on == "slider" else {"body": (str | None, None, BODY)}
     return {**body, "point": (is_.Point | None, None, POINT)} if on == "point" else body
 
