@@ -4,7 +4,7 @@ from .assembly import Assembly, assemble, with_motion_so_far, with_travel
 from .contact_rows import ContactRows
 from .coordinates import without_massless_coupling
 from .motion import Prescribed
-from .probe_rows import ProbeRows
+from .probed import ProbeRows
 from .signals import Signal, Signals
 from .turning_modes import TurningModes
 

@@ -17,7 +17,8 @@ from .coordinates import Coordinates, are_uncoupled
 from .loads import Load, loads_of
 from .motion import Prescribed, motion_of, prescribed_of
 from .own_laws import check_law
-from .probe_rows import ProbeRows, probe_rows
+from .probe_rows import probe_rows
+from .probed import ProbeRows
 from .signals import Signal, Signals
 from .springs import SpringRows, spring_rows
 from .turning_modes import TurningModes, turning_modes

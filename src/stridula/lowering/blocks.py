@@ -19,7 +19,7 @@ from .assembly import Assembly
 from .contact_rows import ContactRows
 from .heating import HeatBlocks, heat_blocks
 from .own_laws import law_of_march, of_one_width
-from .probe_rows import ProbeRows
+from .probed import ProbeRows
 from .schemes import Scheme
 from .springs import SpringRows
 from .stepping import Stepping

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
 
 import numpy as np
 
@@ -13,36 +12,15 @@ from ..connections import elements_of, held_motions, unit
 from ..connections.elements import Motion
 from .coordinates import Coordinates
 from .loads import Load
+from .probed import ProbeRows
 
 # Relative size of a part of the motions prevented by joints below which other joints prevent it, too.
 SHARED = 1e-8
 
 
-@dataclass(frozen=True)
-class ForceRows:
-    """A force, as rows on the coordinates of the march and as shares.
-
-    Attributes
-    ----------
-    rows : ndarray, shape (3, modes)
-        Rows on q, q' and q''.
-    loads : ndarray, shape (loads,)
-        Shares of the factors of the loads.
-    contact : ndarray, shape (rows,)
-        Shares of the normal and the tangential forces of all contacts.
-    springs : dict
-        Shares of the pulls of nonlinear springs beyond their linear parts, by their number.
-    """
-
-    rows: Array
-    loads: Array
-    contact: Array
-    springs: Mapping[int, float]
-
-
 def force_on_first(
     number: int, share: Callable[[Motion], float], coordinates: Coordinates, loads: list[Load]
-) -> ForceRows:
+) -> ProbeRows:
     """Return the force or moment of a connection on its first end.
 
     Parameters
@@ -73,7 +51,7 @@ def force_on_first(
             Motion(unit(connection))
         )
     own = {k: -share(Motion(unit(connection))) for k, one in enumerate(_bent(coordinates)) if one == number}
-    return ForceRows(coordinates.on_march(rows), moved, np.zeros(coordinates.contact_rows), own)
+    return ProbeRows(coordinates.on_march(rows), moved, np.zeros(3), np.zeros(coordinates.contact_rows), own)
 
 
 def _bent(coordinates: Coordinates) -> list[int]:
@@ -91,7 +69,7 @@ def _inner(number: int, coordinates: Coordinates) -> list[range]:
     return found
 
 
-def _of_joint(number: int, share: Callable[[Motion], float], coordinates: Coordinates, loads: list[Load]) -> ForceRows:
+def _of_joint(number: int, share: Callable[[Motion], float], coordinates: Coordinates, loads: list[Load]) -> ProbeRows:
     """Return the force of a rigid joint on its first end.
 
     With the coordinates q of the bodies, and rows J of all motions that joints prevent, its forces F follow from
@@ -121,7 +99,7 @@ def _picked(rows: Array, wanted: Array) -> Array | None:
     return np.asarray(left[:, kept] @ (seen / values[kept]))
 
 
-def _balance(across: Array, coordinates: Coordinates, loads: list[Load]) -> ForceRows:
+def _balance(across: Array, coordinates: Coordinates, loads: list[Load]) -> ProbeRows:
     """Return the part along `across` of what the forces of rigid joints balance, on the coordinates of the bodies."""
     stiffness, dissipation = coordinates.of_bodies
     size, light = len(stiffness), coordinates.shapes_of_bodies
@@ -144,4 +122,4 @@ def _balance(across: Array, coordinates: Coordinates, loads: list[Load]) -> Forc
         if (pull := float(coordinates.between(one, Motion(unit(one))) @ across))
     }
     pushed = np.array([-float(load.own @ across) for load in loads])
-    return ForceRows(coordinates.on_march(rows), pushed, np.array(contact), springs)
+    return ProbeRows(coordinates.on_march(rows), pushed, np.zeros(3), np.array(contact), springs)

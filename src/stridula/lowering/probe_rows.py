@@ -2,58 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import singledispatch
 from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
 from ..checks import ArgumentError, brief
 from ..connections import ends
 from ..records.probes import ConnectionForce, Probe, Reaction, SupportForce
 from .connection_forces import force_on_first
 from .coordinates import Coordinates
 from .loads import Load
-
-
-@dataclass(frozen=True)
-class ProbeRows:
-    """Coefficients of one probe: rows on modal motion, and shares of the signals and of the contact forces.
-
-    Attributes
-    ----------
-    rows : ndarray, shape (3, modes)
-        Rows on q, q' and q''.
-    loads : ndarray, shape (loads,)
-        Shares of the factors of the loads.
-    imposed : ndarray, shape (3,)
-        Shares of the imposed displacement, velocity and acceleration.
-    contact : ndarray, shape (rows,)
-        Shares of the normal and the tangential forces of all contacts.
-    springs : dict
-        Shares of the pulls of nonlinear springs and dashpots beyond their linear parts, by their number.
-    is_of_body : bool
-        Whether it is from a probe of all modes of a body.
-    """
-
-    rows: Array
-    loads: Array
-    imposed: Array
-    contact: Array
-    springs: Mapping[int, float] = field(default_factory=dict)
-    is_of_body: bool = False
-
-    @property
-    def form(self) -> tuple[bytes, tuple[int, ...]]:
-        """A key that is equal for probes with the same rows in a march."""
-        return self.rows.any(axis=1).tobytes(), tuple(self.springs)
-
-    @property
-    def direct(self) -> Array:
-        """Shares of all signals, in the order of `Signals`."""
-        return np.concatenate([self.loads, self.imposed])
+from .probed import ProbeRows
 
 
 def probe_rows(probe: Probe, coordinates: Coordinates, loads: list[Load]) -> list[ProbeRows]:
@@ -99,8 +60,7 @@ def _connection_rows(
     if probe.connection not in coordinates.system.connections:
         raise ArgumentError("probe", "be on a connection of this system", probe, got=f"one on {probe.connection}")
     number = coordinates.system.connections.index(probe.connection)
-    found = force_on_first(number, probe.share, coordinates, loads)
-    return ProbeRows(found.rows, found.loads, np.zeros(3), found.contact, found.springs)
+    return force_on_first(number, probe.share, coordinates, loads)
 
 
 @_rows_of.register
