@@ -75,6 +75,7 @@ _HOME = {
         "TabulatedDashpot",
         "TabulatedSpring",
         "ViscoelasticSpring",
+        "opposite_points",
         "viscoelastic_layer",
     ),
     "doubtful": ("DoubtfulValue",),

@@ -84,6 +84,7 @@ from .connections import Spring as Spring
 from .connections import TabulatedDashpot as TabulatedDashpot
 from .connections import TabulatedSpring as TabulatedSpring
 from .connections import ViscoelasticSpring as ViscoelasticSpring
+from .connections import opposite_points as opposite_points
 from .connections import viscoelastic_layer as viscoelastic_layer
 from .contact import Coulomb as Coulomb
 from .contact import ExponentialWeakening as ExponentialWeakening

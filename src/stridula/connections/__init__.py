@@ -11,6 +11,7 @@ from .ends import ends, unit
 from .layers import viscoelastic_layer
 from .linear import Dashpot, Spring
 from .nonlinear import CubicSpring, NonlinearSpring, TabulatedSpring
+from .opposite import opposite_points
 from .rigid import Bushing, RigidJoint
 from .viscoelastic import ViscoelasticSpring
 
@@ -29,6 +30,7 @@ __all__ = [
     "elements_of",
     "ends",
     "held_motions",
+    "opposite_points",
     "pushes",
     "unit",
     "viscoelastic_layer",

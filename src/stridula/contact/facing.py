@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
-from ..bodies import AxisymmetricBody, SolidBody, SolidMesh
+from ..bodies import AxisymmetricBody, SolidBody
+from ..bodies.solids.opposite import opposite_place
 from ..bodies.solids.places import FacePoints
 from ..checks import ArgumentError
 from .rigid_track import RigidTrack
 
-# Relative tolerance at the ends of a side of a profile, or at the edges of a face.
+# Relative tolerance at the ends of a side of a profile.
 BEYOND = 1e-9
 # The opposite position on the body (None for a plane), the outward normal there, and the distance to it [m].
 Met = tuple[Any, Array, float]
@@ -29,37 +29,13 @@ def on_plane(track: RigidTrack, _: str, place: Array, normal: Array, points: Fac
 
 def on_solid(body: SolidBody, face: str, place: Array, normal: Array, _: FacePoints) -> Met:
     """Return the place on a face of a meshed body opposite a place, along the normal there."""
-    normals, triangles = _triangles(body.mesh, face)
-    best: tuple[float, int] | None = None
-    for first, along, across, square in triangles:
-        toward = square @ normal
-        with np.errstate(divide="ignore", invalid="ignore"):
-            far = ((first - place) * square).sum(axis=1) / toward
-            there = place + far[:, None] * normal - first
-            u = (np.cross(there, across) * square).sum(axis=1) / (square**2).sum(axis=1)
-            v = (np.cross(along, there) * square).sum(axis=1) / (square**2).sum(axis=1)
-        inside = (np.minimum(u, v) >= -BEYOND) & (u + v <= 1.0 + BEYOND) & (np.abs(toward) > 0.0)
-        for number in np.flatnonzero(inside).tolist():
-            if best is None or abs(far[number]) < abs(best[0]):
-                best = float(far[number]), number
-    if best is None:
+    met = opposite_place(body.mesh, face, place, normal)
+    if met is None:
         raise ArgumentError(
             "track_face", "lie opposite the whole face", face, got=f"nothing opposite {words_of(place)}"
         )
-    far, number = best
-    return (place + far * normal).tolist(), -normal if normals[number] @ normal < 0.0 else normal, far
-
-
-@lru_cache(maxsize=8)
-def _triangles(mesh: SolidMesh, face: str) -> tuple[Array, list[tuple[Array, Array, Array, Array]]]:
-    """Return the normals of facets, and one triangle of each at a time: corner, both sides, their product."""
-    faces, corners = mesh.face(face), len(mesh.element_kind.faces[0])
-    nodes = mesh.nodes[faces.nodes[:, :corners]]
-    found = []
-    for second in range(1, corners - 1):
-        first, along, across = nodes[:, 0], nodes[:, second] - nodes[:, 0], nodes[:, second + 1] - nodes[:, 0]
-        found.append((first, along, across, np.cross(along, across)))
-    return faces.normal, found
+    there, facing, far = met
+    return there.tolist(), facing, far
 
 
 def on_revolution(body: AxisymmetricBody, _: str, place: Array, normal: Array, points: FacePoints) -> Met:

@@ -97,6 +97,17 @@ def sampled(mesh: SolidMesh, facet: Array, places: Array, weights: Array) -> Sam
     A facet is an element and the number of its face. `weights` are shares of the unit area, whose sum is 1/2 on a
     triangle and 1 on a square.
     """
+    at, first, second, values = on_facet(mesh, facet, places)
+    vectors = np.cross(first, second)
+    size = np.linalg.norm(vectors, axis=1)
+    return Sampled(at, weights * size, vectors / size[:, None], mesh.elements[facet[0]], values)
+
+
+def on_facet(mesh: SolidMesh, facet: Array, places: Array) -> tuple[Array, Array, Array, Array]:
+    """Return points of the unit triangle or square on a facet: places, both slopes, and the nodes' shape functions.
+
+    All have a row for each point. A facet is an element and the number of its face.
+    """
     kind, (element, side) = mesh.element_kind, facet
     corners = kind.nodes[kind.face_nodes[side]][: len(kind.faces[side])]
     shares, along, across = _on_face(places[:, 0], places[:, 1], len(corners))
@@ -105,9 +116,7 @@ def sampled(mesh: SolidMesh, facet: Array, places: Array, weights: Array) -> Sam
     jacobian = np.einsum("pni,nj->pij", slopes, nodes)
     first = np.einsum("pi,pij->pj", along @ corners, jacobian)
     second = np.einsum("pi,pij->pj", across @ corners, jacobian)
-    vectors = np.cross(first, second)
-    size = np.linalg.norm(vectors, axis=1)
-    return Sampled(values @ nodes, weights * size, vectors / size[:, None], mesh.elements[element], values)
+    return values @ nodes, first, second, values
 
 
 def _integrated(mesh: SolidMesh, name: str) -> tuple[FacePoints, Array, Array]:
