@@ -7,6 +7,9 @@ import pytest
 
 import stridula as st
 from stridula import analysis
+from stridula.bodies.solids.kinds import KINDS
+from stridula.bodies.solids.opposite import opposite_place
+from stridula.bodies.solids.places import on_facet
 
 STEEL = st.Material(young=210e9, density=7800.0, poisson=0.3)
 
@@ -87,6 +90,29 @@ def test_faces_that_do_not_meet_are_refused(change, message):
     given["other"] = bodies[given["other"]]
     with pytest.raises(ValueError, match=message):
         st.opposite_points(**given)
+
+
+@pytest.mark.parametrize("kind", ["tetra10", "hexahedron", "hexahedron20", "hexahedron27", "tetra"])
+def test_a_line_meets_a_curved_facet_where_its_shape_functions_are(kind):
+    """Facets of elements whose nodes are displaced at random."""
+    random = np.random.default_rng(len(kind))
+    nodes = KINDS[kind].nodes + 0.04 * random.standard_normal(KINDS[kind].nodes.shape)
+    sides = range(len(KINDS[kind].faces))
+    faces = {f"side {one}": [[0, one]] for one in sides}
+    mesh = st.SolidMesh(nodes, [list(range(len(nodes)))], kind, faces=faces)
+    for side in sides:
+        for _ in range(10):
+            u, v = random.uniform(0.05, 0.45, 2)
+            at, first, second, _ = on_facet(mesh, mesh.faces[f"side {side}"][0], np.array([[u, v]]))
+            normal = np.cross(first[0], second[0])
+            normal = normal / np.linalg.norm(normal) + 0.1 * random.standard_normal(3)
+            normal /= np.linalg.norm(normal)
+            there, facing, distance = opposite_place(mesh, f"side {side}", at[0] - 0.02 * normal, normal)
+            np.testing.assert_allclose(there, at[0], atol=1e-12)
+            assert distance == pytest.approx(0.02, abs=1e-12)
+            np.testing.assert_array_equal(facing, normal)
+    aside = np.add(mesh.nodes.mean(axis=0), (30.0, 0.0, 0.0))
+    assert opposite_place(mesh, "side 0", aside, np.array([0.0, 1.0, 0.0])) is None
 
 
 def drum_and_shoe(play, inside, cells=(9, 13)):
