@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 
 import numpy as np
 import pytest
@@ -114,6 +115,22 @@ def test_arrows_are_where_forces_and_velocities_are_and_point_their_way():
     assert "2 N" in words
     assert words.count("0.01 m/s") == 2, "of the root and of the slip"
     assert "contact: friction 1.2, gap 10.22 µm" in words
+
+
+def test_a_surface_has_one_line_with_the_range_of_its_gaps():
+    """The points of a curved face on a mesh have gaps that differ in the last digits."""
+    steel, sectors = st.Material(young=210e9, density=7800.0), ((0.05, 0.0599), (0.06, 0.07))
+    meshes = [st.SolidMesh.sector(radii, (-0.3, 0.3), 0.02, (1, 3 + k, 1), axis="z") for k, radii in enumerate(sectors)]
+    shoe, drum = (
+        st.SolidBody(mesh, steel, cutoff=2e4, name=name) for mesh, name in zip(meshes, ("shoe", "drum"), strict=True)
+    )
+    face = st.SurfaceContact(shoe, "outer", drum, "inner", friction=st.Coulomb(0.3), stiffness=1e12, name="lining")
+    words = said(plot.system(st.System(face, [st.Force(shoe.at("inner"), x=1.0)])))
+    (line,) = [one for text in words for one in text.splitlines() if one.startswith("lining")]
+    found = re.fullmatch(r"lining, 12 points: friction 0.3, gap ([\d.]+) µm to ([\d.]+) µm", line)
+    assert found is not None, line
+    gaps = sorted(1e6 * one.gap for one in face.contacts)
+    assert [float(one) for one in found.groups()] == pytest.approx([gaps[0], gaps[-1]], rel=1e-3)
 
 
 def test_bodies_are_as_thick_as_they_are():

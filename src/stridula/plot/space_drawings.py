@@ -9,6 +9,7 @@ import numpy as np
 from ..arrays import Array
 from ..bodies import BodyPoint
 from ..cards import eye_of, spoken
+from ..checks import counted
 from ..connections import ends, unit
 from ..system import System
 from .moved_bodies import check_surfaces, surfaces_of
@@ -121,20 +122,17 @@ class SpaceDrawing(SpaceSketch):
             self._handles[words] = handle(label, JOINT, linestyle=style, marker="s", markersize=3)
 
     def _draw_contacts(self) -> None:
-        found, laws, places = [], dict[str, list[str]](), []
-        for name, contact in zip(self.system.contact_names, self.system.contacts, strict=True):
+        found, places = [], []
+        for contact in self.system.contacts:
             known = [self._place(end) for end in (contact.tip, contact.touched_point) if end is not None]
             place = next((one for one in known if one is not None), None)
-            gap = f", gap {spoken_small(contact.gap)}" if abs(contact.gap) > CLOSED else ""
-            laws.setdefault(f"friction {contact.friction}{gap}", []).append(name)
             if place is not None:
                 places.append(place)
                 sliding = sliding_of(contact, self.system)
                 towards = None if sliding is None else sliding.way.round(1).tobytes()
                 kind = (contact.surface, contact.frame[0].round(1).tobytes(), towards)
                 found.append(((contact, sliding), kind, "", place))
-        for words, names in laws.items():
-            self.caption.append(f"{run_of(names)}: {words}")
+        self.caption += contact_lines(self.system)
         if not places:
             return
         self._dots(np.array(places), "o", CONTACT, 4.0, markeredgecolor="black", markeredgewidth=0.5)
@@ -172,6 +170,26 @@ class SpaceDrawing(SpaceSketch):
         for one in clustered(forces, NEAR * self.extent):
             tail = one.place - ARROW * self.extent * one.things[0]
             self._arrow(tail, one.place, FORCE, "force", one.label, at_tail=True)
+
+
+def contact_lines(system: System) -> list[str]:
+    """Return friction and gaps of contacts in words: a line for each surface, and for others that are alike."""
+    alike: dict[tuple[str, str, str], list[str]] = {}
+    gaps: dict[tuple[str, str, str], list[float]] = {}
+    for name, contact in zip(system.contact_names, system.contacts, strict=True):
+        gap = contact.gap if abs(contact.gap) > CLOSED else 0.0
+        key = contact.surface, str(contact.friction), "" if contact.surface else spoken_small(gap)
+        alike.setdefault(key, []).append(name)
+        gaps.setdefault(key, []).append(gap)
+    lines = []
+    for key, names in alike.items():
+        surface, friction, _ = key
+        low, high = min(gaps[key]), max(gaps[key])
+        ends = dict.fromkeys(spoken_small(one) if one else "0" for one in (low, high))
+        gap_words = f", gap {' to '.join(ends)}" if high > 0.0 or low < 0.0 else ""
+        who = f"{surface}, {counted(len(names), 'point')}" if surface else run_of(names)
+        lines.append(f"{who}: friction {friction}{gap_words}")
+    return lines
 
 
 def spread(things: list[Cluster], most: int) -> list[Cluster]:
