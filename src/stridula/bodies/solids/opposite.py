@@ -1,4 +1,7 @@
-"""The place on a face of a mesh opposite a given place."""
+"""The place on a face of a mesh opposite a given place.
+
+A curved facet is met where its shape functions are, by Newton's method from the triangles of its corners.
+"""
 
 from __future__ import annotations
 
