@@ -14,9 +14,9 @@ from stridula.bodies.solids.places import on_facet
 STEEL = st.Material(young=210e9, density=7800.0, poisson=0.3)
 
 
-def block(sides, divisions, corner=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0), name="", **options):
+def block(sides, divisions, corner=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0), name=""):
     mesh = st.SolidMesh.block(sides, divisions).moved(corner, rotation)
-    return st.SolidBody(mesh, STEEL, cutoff=20e3, name=name, **options)
+    return st.SolidBody(mesh, STEEL, cutoff=20e3, name=name)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -115,12 +115,12 @@ def test_a_line_meets_a_curved_facet_where_its_shape_functions_are(kind):
     assert opposite_place(mesh, "side 0", aside, np.array([0.0, 1.0, 0.0])) is None
 
 
-def drum_and_shoe(play, inside, cells=(9, 13)):
+def drum_and_shoe(play, inside):
     """Return a shoe and a drum about the z axis, of radii that differ by the play: the shoe inside or outside."""
     radius, thick = 0.06, 0.01
     own = (radius - play - thick, radius - play) if inside else (radius + play, radius + play + thick)
     others = (radius, radius + thick) if inside else (radius - thick, radius)
-    sectors = (own, (-0.3, 0.3), cells[0], "shoe"), (others, (-0.5, 0.5), cells[1], "drum")
+    sectors = (own, (-0.3, 0.3), 9, "shoe"), (others, (-0.5, 0.5), 13, "drum")
     return [
         st.SolidBody(st.SolidMesh.sector(radii, angles, 0.02, (1, count, 2), axis="z"), STEEL, cutoff=2e4, name=name)
         for radii, angles, count, name in sectors

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import Array
 from ..bodies import BodyPoint, SolidBody
 from ..bodies.solids.face_patches import patched
-from ..bodies.solids.opposite import opposite_place
+from ..bodies.solids.opposite import opposite_place, place_words
 from ..checks import ArgumentError, choice, count, instance, positive
 
 
@@ -75,20 +75,17 @@ def opposite_points(
     limit = 0.1 * size if farthest is None else positive("farthest", farthest)
     first, second = [], []
     for number, (centre, normal) in enumerate(zip(patches.points.place, patches.points.normal, strict=True)):
-        own_samples = patches.samples.place[patches.owner == number]
-        # The centre of a patch of a curved face lies beside it.
-        place = own_samples[np.argmin(np.linalg.norm(own_samples - centre, axis=1))]
-        flat = opposite_place(body.mesh, face, centre, normal)
-        if flat is not None and abs(flat[2]) < 1e-9 * size:
-            place = centre
+        # The centre of a patch of a curved face lies beside it, that of a ring in its hole.
+        projected = opposite_place(body.mesh, face, centre, normal)
+        samples = patches.samples.place[patches.owner == number]
+        place = samples[np.argmin(np.linalg.norm(samples - centre, axis=1))] if projected is None else projected[0]
         met = opposite_place(other.mesh, other_face, place, normal)
-        where = f"({', '.join(f'{one:.4g}' for one in place)})"
         if met is None:
-            got = f"nothing opposite {where}"
+            got = f"nothing opposite {place_words(place)}"
             raise ArgumentError("other_face", f"lie opposite the whole face {face!r}", other_face, got=got)
         there, _, distance = met
         if abs(distance) > limit:
-            got = f"{abs(distance):.4g} m at {where}"
+            got = f"{abs(distance):.4g} m at {place_words(place)}"
             raise ArgumentError("farthest", "be at least the distance between the faces", got=got)
         first.append(body.at(place.tolist()))
         second.append(other.at(there.tolist()))

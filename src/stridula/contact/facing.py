@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..bodies import AxisymmetricBody, SolidBody
-from ..bodies.solids.opposite import opposite_place
+from ..bodies.solids.opposite import opposite_place, place_words
 from ..bodies.solids.places import FacePoints
 from ..checks import ArgumentError
 from .rigid_track import RigidTrack
@@ -32,7 +32,7 @@ def on_solid(body: SolidBody, face: str, place: Array, normal: Array, _: FacePoi
     met = opposite_place(body.mesh, face, place, normal)
     if met is None:
         raise ArgumentError(
-            "track_face", "lie opposite the whole face", face, got=f"nothing opposite {words_of(place)}"
+            "track_face", "lie opposite the whole face", face, got=f"nothing opposite {place_words(place)}"
         )
     there, facing, far = met
     return there.tolist(), facing, far
@@ -53,18 +53,13 @@ def on_revolution(body: AxisymmetricBody, _: str, place: Array, normal: Array, p
         share = (way[0] * apart[:, 1] - way[1] * apart[:, 0]) / toward
     met = np.flatnonzero((share >= -BEYOND) & (share <= 1.0 + BEYOND) & (np.abs(toward) > 0.0) & np.isfinite(far))
     if not met.size:
-        raise ArgumentError("track", "lie opposite the whole face", got=f"nothing opposite {words_of(place)}")
+        raise ArgumentError("track", "lie opposite the whole face", got=f"nothing opposite {place_words(place)}")
     side = int(met[np.abs(far[met]).argmin()])
     found = start[side] + np.clip(share[side], 0.0, 1.0) * along[side]
     # The profile is to the left of its outline.
     outward = np.array([along[side, 1], -along[side, 0]]) / np.hypot(*along[side])
     facing = outward @ np.stack(directions)
     return (float(found[0]), theta, float(found[1])), facing, float(far[side])
-
-
-def words_of(place: Array) -> str:
-    """Return a place in words."""
-    return f"({', '.join(f'{one:.4g}' for one in place)})"
 
 
 # Functions by the kind of the touched body.

@@ -12,13 +12,14 @@ import numpy as np
 
 from ..arrays import Array
 from ..bodies import AxisymmetricBody, ReducedBody, SolidBody
+from ..bodies.solids.opposite import place_words
 from ..bodies.solids.overlays import overlaid
 from ..bodies.solids.places import FacePoints
 from ..checks import ArgumentError, choice, counted, finite, instance
 from ..declared import Each, Number, Position, check_declared
 from ..doubtful import warn_of
 from .coulomb import Coulomb
-from .facing import BEFORE, words_of
+from .facing import BEFORE
 from .friction_law import FrictionLaw
 from .heating import Heating, check_heating
 from .point_contact import PointContact
@@ -192,9 +193,11 @@ class SurfaceContact:
             gap = gap if gaps is None else float(gaps[number])
             if facing @ normal > -FACING:
                 got = f"an angle of {np.degrees(np.arccos(-facing @ normal)):.3g} degrees"
-                raise ArgumentError("track", f"face the {self.face!r} of the body", got=f"{got} at {words_of(place)}")
+                raise ArgumentError(
+                    "track", f"face the {self.face!r} of the body", got=f"{got} at {place_words(place)}"
+                )
             if gap + self.gap < -OVERLAP * size:
-                got = f"an overlap of {-gap - self.gap:.3g} m at {words_of(place)}"
+                got = f"an overlap of {-gap - self.gap:.3g} m at {place_words(place)}"
                 raise ArgumentError("gap", "leave the faces apart", self.gap, got=got)
             contact = PointContact(
                 self.body.at(place.tolist()) if self.overlay else self.body.contact_point(self.face, number),
@@ -242,7 +245,9 @@ class SurfaceContact:
             return {}
         along = moved - (moved @ facing) * facing
         if np.linalg.norm(along) < ALONG * size:
-            got = f"an angle of {np.degrees(np.arccos(np.linalg.norm(along) / size)):.3g} degrees at {words_of(place)}"
+            got = (
+                f"an angle of {np.degrees(np.arccos(np.linalg.norm(along) / size)):.3g} degrees at {place_words(place)}"
+            )
             raise ArgumentError("turning", "move the track along its surface", self.turning, got=got)
         # Flat faces of elements stand for the round surface, along which the track moves.
         return {"tangent": tuple(along.tolist()), "surface_velocity": (size, 0.0)}

@@ -174,19 +174,16 @@ class SpaceDrawing(SpaceSketch):
 
 def contact_lines(system: System) -> list[str]:
     """Return friction and gaps of contacts in words: a line for each surface, and for others that are alike."""
-    alike: dict[tuple[str, str, str], list[str]] = {}
-    gaps: dict[tuple[str, str, str], list[float]] = {}
+    alike: dict[tuple[str, str, str], list[tuple[str, float]]] = {}
     for name, contact in zip(system.contact_names, system.contacts, strict=True):
         gap = contact.gap if abs(contact.gap) > CLOSED else 0.0
         key = contact.surface, str(contact.friction), "" if contact.surface else spoken_small(gap)
-        alike.setdefault(key, []).append(name)
-        gaps.setdefault(key, []).append(gap)
+        alike.setdefault(key, []).append((name, gap))
     lines = []
-    for key, names in alike.items():
-        surface, friction, _ = key
-        low, high = min(gaps[key]), max(gaps[key])
-        ends = dict.fromkeys(spoken_small(one) if one else "0" for one in (low, high))
-        gap_words = f", gap {' to '.join(ends)}" if high > 0.0 or low < 0.0 else ""
+    for (surface, friction, _), contacts in alike.items():
+        names, gaps = zip(*contacts, strict=True)
+        ends = dict.fromkeys(spoken_small(one) if one else "0" for one in (min(gaps), max(gaps)))
+        gap_words = f", gap {' to '.join(ends)}" if any(gaps) else ""
         who = f"{surface}, {counted(len(names), 'point')}" if surface else run_of(names)
         lines.append(f"{who}: friction {friction}{gap_words}")
     return lines

@@ -141,6 +141,11 @@ def on_curved(
     return (u**ones * v**others) @ surface, distance
 
 
+def place_words(place: Array) -> str:
+    """Return a place in words."""
+    return f"({', '.join(f'{one:.4g}' for one in place)})"
+
+
 @lru_cache(maxsize=8)
 def facets_of(mesh: SolidMesh, face: str) -> Facets:
     """Return the facets of a face."""
