@@ -51,3 +51,18 @@ def test_an_excess_page_waits_until_there_is_room(chromium, own):
         pages[0].socket.close()
         page.locator("#lost").wait_for(state="hidden")
         plays_on(page)
+
+
+def test_buttons_that_need_the_server_wait_for_it(chromium, own):
+    names = ("instruments", "tour-begin", "challenges-open")
+    with Browsing(chromium, own) as browsing:
+        browsing.complains = False
+        # Without the script of the connection the page never hears from its server.
+        browsing.context.route("**/stream.js", lambda route: route.abort())
+        page = browsing.begin("")
+        until(page, "window.stridula")
+        assert all(page.locator(f"#{name}").is_disabled() for name in names)
+        browsing.context.unroute("**/stream.js")
+        page = browsing.begin("")
+        for name in names:
+            until(page, "!document.getElementById(arg).disabled", name)

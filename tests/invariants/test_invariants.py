@@ -67,6 +67,28 @@ STRUCK = Recipe(
 )
 
 
+# Struck as it lands, it stops, slides back and stops again in three steps that all count as sticking.
+REBOUNDING = Recipe(
+    kind="slider",
+    feet=(
+        Foot(
+            law=st.TabulatedFriction((0.0, 0.01, 0.03, 2.0), (0.5, 0.75, 0.75, 0.5)),
+            gap=3e-5,
+            inclination=0.0,
+            belt=0.0,
+            lift=0.0,
+            frequency=30.0,
+        ),
+    ),
+    masses=(1.0,),
+    springs=(100.0,),
+    dashpots=(1.0,),
+    load=5.05,
+    speed=0.0,
+    angle=0.0,
+)
+
+
 # Bristles bent under a small normal force and released under a large one: they give more energy than they took.
 GIVING = Recipe(
     kind="block",
@@ -107,6 +129,7 @@ LANDING = Recipe(
 @example(GIVING, SCHEMES[0])
 @example(LANDING, SCHEMES[0])
 @example(LANDING, SCHEMES[1])
+@example(REBOUNDING, SCHEMES[0])
 @settings(max_examples=150, deadline=None)
 def test_laws_hold_at_every_step(recipe, scheme):
     assert violations(solved(recipe, scheme, STEPS), build(recipe)) == set()

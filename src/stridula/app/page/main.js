@@ -107,6 +107,8 @@ async function welcome(message) {
     challenges.read(scene.challenge, scene.hasSetting);
     // Undo does not go back to before the link.
     scene.past = [];
+    // Before, they would open nothing.
+    for (const name of ["instruments", "tour-begin", "challenges-open"]) $(name).disabled = false;
   } else challenges.again();
   if (sources) listenTo();
   say({ type: "repeat", on: $("repeat").checked });
