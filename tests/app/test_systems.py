@@ -54,6 +54,46 @@ y = -5.0
 [simulation]
 duration = 0.1
 """
+# A rigid body on a bushing, with a contact that heats, beside a pad on a layer.
+MOUNTED = """
+[bodies.block]
+kind = "rigid body"
+mass = 2
+inertia = [0.01, 0.02, 0.015]
+points = { foot = [0, "-20 mm", 0] }
+[bodies.pad]
+kind = "solid"
+materials = { young = "5 GPa", density = 2500 }
+cutoff = "12 kHz"
+mesh = { shape = "block", lengths = ["80 mm", "12 mm", "40 mm"], divisions = [4, 1, 2] }
+[[contacts]]
+tip = { body = "block", point = "foot" }
+track = { kind = "rigid", velocity = "10 cm/s" }
+heating = { kind = "layers", capacity = [0.5, 4], conductance = [0.2], cooling = 0.1 }
+[contacts.friction]
+law = "over temperature"
+temperature = [20, 200]
+laws = [{ law = "coulomb", coefficient = 0.5 }, { law = "coulomb", coefficient = 0.3 }]
+[[connections]]
+kind = "bushing"
+first = { body = "block", point = "centre" }
+stiffness = [1e5, 4e5, 2e5]
+damping = [20, 20, 30]
+rotational_stiffness = [50, 20, 50]
+[[layers]]
+first = { body = "pad", face = "top" }
+frequency = ["500 Hz", "2 kHz"]
+stiffness = { y = "4e8 N/m", x = [4e7, 5e7] }
+loss_factor = 0.2
+points = 2
+[[drives]]
+kind = "force"
+body = "block"
+point = "centre"
+y = -20
+[simulation]
+duration = "10 ms"
+"""
 # A spring to the ground at a point that touches nothing.
 ON_A_SPRING = TWO_RODS.replace('second = { body = "back", point = "root" }\n', "")
 PRESSURE_ON_PLATES = {"squeal-on-plate", "judder-on-plate"}
@@ -208,20 +248,32 @@ def test_a_violin_is_bowed_as_a_whole(talk):
     assert set(talk.play(480).stroke) == {1}
 
 
-@pytest.mark.parametrize("case", SYSTEMS)
-def test_every_control_of_a_system_changes_something(case):
-    before = playable(case, None, {})
+@pytest.mark.parametrize(("case", "text"), [*((case, None) for case in SYSTEMS), ("", MOUNTED)])
+def test_every_control_of_a_system_changes_something(case, text):
+    before = playable(case, text, {})
     assert before.turned.controls
     for control in before.turned.controls:
         value = before.turned.values[control.key]
         assert control.low < control.high
         assert control.low * control.scale <= value <= control.high * control.scale
         assert control.words
-        after = playable(case, None, {control.key: 0.99 * value})
+        after = playable(case, text, {control.key: 0.99 * value})
         assert after.turned.values[control.key] == pytest.approx(0.99 * value)
         assert after.system != before.system
         assert {one.key for one in after.turned.controls} >= {control.key}
         assert [one for one in after.turned.controls if one.key == control.key] == [control]
+
+
+def test_entries_of_lists_have_controls_unless_they_are_samples():
+    turned = playable("", MOUNTED, {}).turned
+    labels = {one.key: one.label for one in turned.controls}
+    assert labels["connections.0.stiffness.1"] == "Stiffness along y"
+    assert labels["connections.0.rotational_stiffness.2"] == "Rotational stiffness about z"
+    assert labels["contacts.0.heating.capacity.1"] == "Capacity 2"
+    assert labels["contacts.0.friction.laws.1.coefficient"] == "Coefficient, law 2"
+    assert labels["layers.0.stiffness.y"] == "Stiffness along y"
+    # Along x the layer has a table over the frequency.
+    assert not [key for key in labels if key.startswith(("layers.0.stiffness.x", "layers.0.frequency"))]
 
 
 def test_the_friction_law_of_a_belt_changes_during_a_run(talk):

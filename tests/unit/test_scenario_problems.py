@@ -219,7 +219,7 @@ def test_every_problem_of_bodies_and_contacts_is_reported(tmp_path):
         ("cutoff = 3\n" + MASS_ON_FLOOR, "cutoff must be set in a body"),
         (
             MASS_ON_FLOOR + '[bodies.b]\nkind = "point mass"\nmass = 1\n',
-            "bodies.b must be in a contact or a connection",
+            "bodies.b must be in a contact, a connection or a layer",
         ),
         (MASS_ON_FLOOR.replace('body = "a"', 'body = "b"'), "contacts.0.tip.body must be one of a, got 'b'"),
         (MASS_ON_FLOOR.replace('"rigid"', '"beam", body = "a"'), "contacts.0.track.body must be a modal beam, got 'a'"),

@@ -12,7 +12,7 @@ from .messages import Scene
 from .playable import PRESETS, Playable, playable
 
 # A number of an entry in a key.
-NUMBER = re.compile(r"\b(contacts\.|surfaces\.|drives\.|connections\.)\d+")
+NUMBER = re.compile(r"\b(contacts\.|surfaces\.|drives\.|connections\.|layers\.)\d+")
 
 
 @dataclass(frozen=True)

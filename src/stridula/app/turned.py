@@ -10,17 +10,20 @@ from fnmatch import fnmatchcase
 from functools import lru_cache
 from typing import Any
 
+from ..connections import Bushing
 from ..scenarios import outline
 from ..scenarios.outline import Path, look_up
 from ..scenarios.quantities import DEGREES, UNITS
 from .controls import CHOICES, CONTROLS, DEGREE, Choice, Control, Turned
 
 # Tables whose numbers have controls; contacts and drives come before bodies.
-TURNED = ("contacts", "surfaces", "drives", "connections", "bodies")
+TURNED = ("contacts", "surfaces", "drives", "connections", "layers", "bodies")
 # Positions, and numbers with little effect, have no controls.
 NOT_TURNED = {"point", "points", "gap", "at", "inclination", "poisson", "profile", "mesh"}
 # The settings of bodies with a mesh, whose modes take minutes to compute, have none either.
 MESHES, NOT_TURNED_OF_MESHES = {"profile", "mesh"}, {"cutoff", "axis", "origin"}
+# Lists whose entries have controls, of a bushing and of a contact that heats; tables over the frequency have none.
+LISTS = {"stiffness", "damping", "rotational_stiffness", "rotational_damping", "capacity", "conductance", "initial"}
 # Range of a slider, as a factor on the value in the scenario.
 REACH = 5.0
 # Least number of steps of a slider.
@@ -36,7 +39,7 @@ _PAIR = (
 PREFIXED = ("m", "N", "N/m", "N s/m", "Pa")
 PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "m": 1e-3, "µ": 1e-6, "n": 1e-9}
 FRICTION_LAW = CHOICES[0]
-GROUPS = {"drives": "Drive", "connections": "Springs", "contacts": "Contact", "surfaces": "Contact"}
+GROUPS = {"drives": "Drive", "connections": "Springs", "layers": "Layer", "contacts": "Contact", "surfaces": "Contact"}
 
 
 def turned_of_system(tables: dict[str, Any], before: dict[str, Any]) -> Turned:
@@ -107,7 +110,8 @@ def _matching(parts: tuple[str, ...], tables: Any, path: Path) -> Iterator[Path]
 
 def _keys(tables: dict[str, Any], before: dict[str, Any]) -> list[tuple[str, Path]]:
     """Return the keys of numbers with controls, contacts and drives before bodies."""
-    found = [one for one in _together(tables, before, _is_turned) if not _makes_a_mesh(one[1], tables)]
+    found = _together(tables, before, _is_turned)
+    found = [one for one in found if not (_makes_a_mesh(one[1], tables) or _is_sample(one[1], tables))]
     return sorted(found, key=lambda item: (TURNED.index(_acts_as(item[1])), "friction" not in item[1]))
 
 
@@ -119,7 +123,7 @@ def _acts_as(path: Path) -> str:
 def _is_turned(path: Path, node: outline.Node) -> bool:
     return (
         path[0] in TURNED
-        and isinstance(path[-1], str)
+        and (isinstance(path[-1], str) or path[-2] in LISTS)
         and not NOT_TURNED & set(path)
         and not any("." in str(part) for part in path)
         and outline.is_number(node)
@@ -130,6 +134,13 @@ def _is_turned(path: Path, node: outline.Node) -> bool:
 def _makes_a_mesh(path: Path, tables: dict[str, Any]) -> bool:
     """Return whether a number sets the number of modes of a body with a mesh, or its position."""
     return bool(path[0] == "bodies" and path[2] in NOT_TURNED_OF_MESHES and MESHES & set(look_up(tables, path[:2])))
+
+
+def _is_sample(path: Path, tables: dict[str, Any]) -> bool:
+    """Return whether a number is that of a table at one frequency."""
+    return isinstance(path[-1], int) and any(
+        "frequency" in look_up(tables, path[:length]) for length in range(2, len(path) - 1)
+    )
 
 
 def _is_law(path: Path, node: outline.Node) -> bool:
@@ -180,12 +191,27 @@ def _control(key: str, path: Path, tables: dict[str, Any], value: float) -> Cont
     unit, scale = _shown_in(next(iter(outline.units(node)), "1"), value)
     low, high = sorted((value / scale / REACH, value / scale * REACH))
     step = 10.0 ** math.floor(math.log10((high - low) / STEPS))
-    words = _sentence((node or {}).get("description", ""))
-    name = str(path[-1]).replace("_", " ")
-    label = f"Along {name}" if len(name) == 1 else name.capitalize()
+    described = node if isinstance(path[-1], str) else outline.node_at(path[:-1], tables)
+    words = _sentence((described or {}).get("description", ""))
+    label = _label(path, tables)
     if "materials" in path[-3:-2]:
         label = f"{label}, {path[-2]}"
     return Control(key, group, label, unit, scale, _rounded(low), _rounded(high), step, words)
+
+
+def _label(path: Path, tables: dict[str, Any]) -> str:
+    """Return the name of a number: its key, and which of a list it is."""
+    *_, above, last = path
+    name = str(above).replace("_", " ") if isinstance(above, str) else ""
+    if isinstance(last, str):
+        label = f"{name} along {last}".strip() if len(last) == 1 else last.replace("_", " ")
+    elif look_up(tables, path[:2]).get("kind") == Bushing.kind:
+        label = f"{name} {'about' if name.startswith('rotational') else 'along'} {'xyz'[last]}"
+    else:
+        label = f"{name} {last + 1}"
+    if "laws" in path:
+        label = f"{label}, law {int(path[path.index('laws') + 1]) + 1}"
+    return label[:1].upper() + label[1:]
 
 
 def _sentence(text: str) -> str:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
-from ..bodies import BodyPoint, SolidBody
-from ..bodies.solids.face_patches import patched
+from ..bodies import BodyPoint, SolidBody, SolidMesh
+from ..bodies.solids.face_patches import Patches, patched
 from ..bodies.solids.opposite import opposite_place, place_words
 from ..checks import ArgumentError, choice, count, instance, positive
 
@@ -14,12 +14,12 @@ from ..checks import ArgumentError, choice, count, instance, positive
 def opposite_points(
     body: SolidBody,
     face: str,
-    other: SolidBody,
-    other_face: str,
+    other: SolidBody | None = None,
+    other_face: str = "",
     *,
     points: int = 12,
     farthest: float | None = None,
-) -> tuple[list[BodyPoint], list[BodyPoint], Array]:
+) -> tuple[list[BodyPoint], list[BodyPoint] | None, Array]:
     """Return points on a face of a meshed body and those opposite on a face of another, for a layer between them.
 
     The first face is divided into patches of nearly equal area; the points are their centres, and the places that the
@@ -32,9 +32,9 @@ def opposite_points(
         Body with the first face, of which every patch needs something opposite: take the smaller face.
     face : str
         Name of the first face.
-    other : SolidBody
-        Other body.
-    other_face : str
+    other : SolidBody, optional
+        Other body; the ground if left out.
+    other_face : str, optional
         Name of its face.
     points : int, optional
         Approximate number of points.
@@ -44,7 +44,7 @@ def opposite_points(
     Returns
     -------
     first, second : list of BodyPoint
-        The points of both faces, in the same order.
+        The points of both faces, in the same order; None in place of the second for the ground.
     area : ndarray
         Area of each patch [m²].
 
@@ -67,18 +67,18 @@ def opposite_points(
     >>> print(len(first), len(springs), f"{area.sum():.4g} m2")
     8 24 0.004 m2
     """
-    for name, one, part, own in (("body", body, "face", face), ("other", other, "other_face", other_face)):
-        instance(name, one, SolidBody)
-        choice(part, own, one.face_names or ("none",))
+    _check_face("body", body, "face", face)
+    if other is not None:
+        _check_face("other", other, "other_face", other_face)
     patches = patched(body.mesh, face, count("points", points))
+    places = _places_on_face(body.mesh, face, patches)
+    first, area = [body.at(place.tolist()) for place in places], patches.points.area.copy()
+    if other is None:
+        return first, None, area
     size = float(np.linalg.norm(np.ptp(patches.samples.place, axis=0)))
     limit = 0.1 * size if farthest is None else positive("farthest", farthest)
-    first, second = [], []
-    for number, (centre, normal) in enumerate(zip(patches.points.place, patches.points.normal, strict=True)):
-        # The centre of a patch of a curved face lies beside it, that of a ring in its hole.
-        projected = opposite_place(body.mesh, face, centre, normal)
-        samples = patches.samples.place[patches.owner == number]
-        place = samples[np.argmin(np.linalg.norm(samples - centre, axis=1))] if projected is None else projected[0]
+    second = []
+    for place, normal in zip(places, patches.points.normal, strict=True):
         met = opposite_place(other.mesh, other_face, place, normal)
         if met is None:
             got = f"nothing opposite {place_words(place)}"
@@ -87,6 +87,21 @@ def opposite_points(
         if abs(distance) > limit:
             got = f"{abs(distance):.4g} m at {place_words(place)}"
             raise ArgumentError("farthest", "be at least the distance between the faces", got=got)
-        first.append(body.at(place.tolist()))
         second.append(other.at(there.tolist()))
-    return first, second, patches.points.area.copy()
+    return first, second, area
+
+
+def _check_face(name: str, body: SolidBody, of_face: str, face: str) -> None:
+    instance(name, body, SolidBody)
+    choice(of_face, face, body.face_names or ("none",))
+
+
+def _places_on_face(mesh: SolidMesh, face: str, patches: Patches) -> list[Array]:
+    """Return the centre of each patch on its face: that of a curved face lies beside it, that of a ring in its hole."""
+    places = []
+    for number, (centre, normal) in enumerate(zip(patches.points.place, patches.points.normal, strict=True)):
+        projected = opposite_place(mesh, face, centre, normal)
+        samples = patches.samples.place[patches.owner == number]
+        nearest = samples[np.argmin(np.linalg.norm(samples - centre, axis=1))]
+        places.append(nearest if projected is None else projected[0])
+    return places

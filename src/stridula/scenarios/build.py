@@ -40,11 +40,12 @@ from ..integration import GaussSeidel
 from ..ordinary import NotOrdinary
 from ..records import Probe, probes
 from ..system import System
+from .build_layers import layer_of
 from .build_meshed import axisymmetric_body, solid_body
 from .errors import ScenarioError
 from .quantities import quantity
 from .read import FILES
-from .schema import TOUCHING
+from .schema import JOINING, TOUCHING
 
 OF_SPACE: dict[str, Callable[..., Any]] = {one.kind: one for one in (RigidBody, ModalBody)}
 MESHED: dict[str, Callable[..., Any]] = {AxisymmetricBody.kind: axisymmetric_body, SolidBody.kind: solid_body}
@@ -159,20 +160,24 @@ class Builder:
             self._surface(number, dict(table)) for number, table in enumerate(self.tables.get("surfaces") or [])
         ]
         joined = self.tables.get("connections") or []
-        return contacts, [self._connection(number, dict(table)) for number, table in enumerate(joined)]
+        connections = [self._connection(number, dict(table)) for number, table in enumerate(joined)]
+        for number, table in enumerate(self.tables.get("layers") or []):
+            connections += self._layer(("layers", number), table)
+        return contacts, connections
 
     def _check_used(self) -> list[str]:
-        """Return the names of the bodies in the order in which contacts and connections name them."""
+        """Return the names of the bodies in the order in which contacts, connections and layers name them."""
         named: dict[Place, str] = {}
         for path, contact in self._touching():
             tip: Place = ("tip",) if "tip" in contact else ()
             named[(*path, *tip, "body")] = contact.get("tip", contact)["body"]
             if contact["track"]["kind"] != "rigid":
                 named[(*path, "track", "body")] = contact["track"]["body"]
-        for number, connection in enumerate(self.tables.get("connections") or []):
-            for end in ("first", "second"):
-                if connection.get(end) is not None:
-                    named[("connections", number, end, "body")] = connection[end]["body"]
+        for key in JOINING:
+            for number, joining in enumerate(self.tables.get(key) or []):
+                for end in ("first", "second"):
+                    if joining.get(end) is not None:
+                        named[(key, number, end, "body")] = joining[end]["body"]
         bodies = self.tables["bodies"]
         for path, name in named.items():
             if name not in bodies:
@@ -180,7 +185,7 @@ class Builder:
         for name in bodies:
             if name not in named.values():
                 self.problems.append(
-                    f"{self.words(('bodies', name))} must be in a contact or a connection, got neither"
+                    f"{self.words(('bodies', name))} must be in a contact, a connection or a layer, got none of them"
                 )
         return list(dict.fromkeys(named.values()))
 
@@ -408,6 +413,15 @@ class Builder:
             table.pop("history", None)
         with self._within(*path):
             return made_or_read(CONNECTIONS[kind], table, first, other)
+
+    def _layer(self, path: Place, table: Tables) -> list[Any]:
+        ends = [end for end in ("first", "second") if table.get(end) is not None]
+        bodies = [self._body_of_kind((*path, end, "body"), table[end]["body"], SolidBody.kind) for end in ends]
+        if None in bodies:
+            return []
+        with self._within(*path):
+            return layer_of(table, *bodies)
+        return []
 
     def _drive(self, number: int, table: Tables) -> Any:
         path = ("drives", number)

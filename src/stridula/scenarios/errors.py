@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from ..checks import LONGEST, listed, suggestion
 from . import outline
 from .outline import Path
-from .schema import GENERAL, PAIR, TOUCHING
+from .schema import GENERAL, JOINING, PAIR, TOUCHING
 
 # Problems listed one by one; the rest is counted.
 MOST_PROBLEMS = 20
@@ -71,7 +71,7 @@ def wrong_form(tables: dict[str, Any]) -> list[str]:
     tables : dict
         The tables as written, before sharing.
     """
-    is_general = any(key in tables for key in (*GENERAL, "connections"))
+    is_general = any(key in tables for key in (*GENERAL, *JOINING))
     wanted, others = (GENERAL, PAIR) if is_general else (PAIR, GENERAL)
     left_out = TOUCHING if any(key in tables for key in TOUCHING) else TOUCHING[1:]
     problems = [
@@ -83,7 +83,7 @@ def wrong_form(tables: dict[str, Any]) -> list[str]:
             f"{key} must be set in a body, got one at the top level, which applies to beams and plates only"
             for key in shared
         ]
-    for key in (*GENERAL, "connections", "drives"):
+    for key in (*GENERAL, *JOINING, "drives"):
         held = tables.get(key)
         if isinstance(held, (dict, list)) and len(held) > MOST_TABLES:
             problems.append(f"{key} must hold at most {MOST_TABLES}, got {len(held)}")

@@ -222,7 +222,7 @@ class Pair:
     schema = list_of(TEXT, 2)
 
     def read(self, value: Any) -> Any:
-        if not isinstance(value, list) or len(value) != 2 or not all(isinstance(one, str) for one in value):
+        if not isinstance(value, (list, tuple)) or len(value) != 2 or not all(isinstance(one, str) for one in value):
             raise refused('be two names of faces, such as ["plate/front", "lining/back"]')
         return value
 
@@ -236,7 +236,7 @@ class Divided:
     )
 
     def read(self, value: Any) -> Any:
-        if isinstance(value, list) and all(isinstance(one, str) for one in value):
+        if isinstance(value, (list, tuple)) and all(isinstance(one, str) for one in value):
             return value
         if not isinstance(value, dict) or not all(map(self._is_division, value.values())):
             raise refused("be a list of names, or divisions by name, such as {bottom = 30} or {bottom = [6, 5]}")
@@ -244,7 +244,7 @@ class Divided:
 
     @staticmethod
     def _is_division(one: Any) -> bool:
-        return _is_whole(one) or one == "integration" or (isinstance(one, list) and all(map(_is_whole, one)))
+        return _is_whole(one) or one == "integration" or (isinstance(one, (list, tuple)) and all(map(_is_whole, one)))
 
 
 @dataclass(frozen=True)
@@ -278,7 +278,7 @@ class Numbers:
             return value
         elif self.damping and isinstance(value, dict):
             return LAW_OF_DAMPING.read(value)
-        elif 0 in self.dimensions and not isinstance(value, list):
+        elif 0 in self.dimensions and not isinstance(value, (list, tuple, np.ndarray)):
             return quantity(value, "1")
         else:
             array = _array(value)
@@ -312,7 +312,7 @@ class Points:
     def _point(self, name: str, point: Any) -> Any:
         if isinstance(point, dict) and set(point) <= {"x", "y", "z"}:
             point = [point.get(axis) for axis in ("xyz" if "z" in point else "xy")]
-        if isinstance(point, list) and len(point) in (2, 3) and all(map(_is_label_or_none, point)):
+        if isinstance(point, (list, tuple)) and len(point) in (2, 3) and all(map(_is_label_or_none, point)):
             return tuple(tuple(label) if isinstance(label, list) else label for label in point)
         if _is_whole(point):
             return point
@@ -329,12 +329,27 @@ class Points:
 
 
 class Places:
-    """Places of points by name: three numbers each, along x, y and z [m]."""
+    """Places of points by name: three distances each, along x, y and z."""
+
+    schema = by_name(COORDINATES.schema)
+
+    def read(self, value: Any) -> dict[str, Any]:
+        return {name: self._place(name, place) for name, place in _by_name(value).items()}
+
+    def _place(self, name: str, place: Any) -> Any:
+        try:
+            return COORDINATES.read(place)
+        except ArgumentError as error:
+            raise refused(f"give the point {name} a place that must {error.allowed}") from None
+
+
+class Vectors:
+    """Three numbers for each name, along x, y and z or as their key says."""
 
     schema = by_name(LIST_OF_NUMBERS)
 
     def read(self, value: Any) -> dict[str, Any]:
-        return {name: tuple(VECTOR.read(place).tolist()) for name, place in _by_name(value).items()}
+        return {name: tuple(VECTOR.read(vector).tolist()) for name, vector in _by_name(value).items()}
 
 
 class Motion:
@@ -343,7 +358,7 @@ class Motion:
     schema = any_of(list_of(INTEGER), MATRIX.schema)
 
     def read(self, value: Any) -> Any:
-        if isinstance(value, list) and len(value) in (2, 3) and all(map(_is_whole, value)):
+        if isinstance(value, (list, tuple)) and len(value) in (2, 3) and all(map(_is_whole, value)):
             return tuple(value)
         return MATRIX.read(value)
 
@@ -368,7 +383,7 @@ def _array(value: Any) -> Array | None:
 
 
 def _entries(row: Any) -> Any:
-    return row if isinstance(row, list) else [row]
+    return row if isinstance(row, (list, tuple)) else [row]
 
 
 def _is_whole(value: Any) -> bool:
@@ -376,7 +391,7 @@ def _is_whole(value: Any) -> bool:
 
 
 def _is_label_or_none(value: Any) -> bool:
-    is_label = isinstance(value, list) and len(value) == 2 and all(map(_is_whole, value))
+    is_label = isinstance(value, (list, tuple)) and len(value) == 2 and all(map(_is_whole, value))
     return value is None or _is_whole(value) or is_label
 
 
@@ -421,6 +436,7 @@ Translation = Annotated[Any, Read(Motion())]
 Point = Annotated[Any, Read(Place())]
 PointTable = Annotated[Any, Read(Points())]
 PlaceTable = Annotated[Any, Read(Places())]
+VectorTable = Annotated[Any, Read(Vectors())]
 MeshNode = Annotated[Any, Read(Node())]
 FixedGroups = Annotated[Any, Read(Fixed())]
 TiedFaces = Annotated[Any, Read(Pair())]

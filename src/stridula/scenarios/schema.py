@@ -14,6 +14,7 @@ from .derived import Keys, table_of
 from .schema_bodies import Body, Material, Section, Slider, Track
 from .schema_contacts import Connection, Contact, Friction, PairContact, Surface
 from .schema_drives import Drive
+from .schema_layers import Layer
 from .schema_probes import Probe
 from .tables import Table
 
@@ -87,6 +88,8 @@ class ScenarioTable(Table):
     """contacts of faces of meshed bodies, in addition to contacts or in their place"""
     connections: list[Connection] | None = None
     """springs and dashpots between bodies"""
+    layers: list[Layer] | None = None
+    """layers of rubber between faces of meshed bodies, in addition to connections"""
     drives: list[Drive] = Field(default_factory=list)
     """forces, velocities and initial states"""
     simulation: Simulation
@@ -95,6 +98,7 @@ class ScenarioTable(Table):
 
 PAIR = ("slider", "track", "contact")
 TOUCHING = ("contacts", "surfaces")
+JOINING = ("connections", "layers")
 GENERAL = ("bodies", *TOUCHING)
 
 

@@ -188,11 +188,11 @@ class Modal(Table):
     """number of residual shapes, the last columns of the rows"""
     turning: Turning | None = None
     """transport of the modes by a turning body"""
-    velocities: is_.PlaceTable | None = None
+    velocities: is_.VectorTable | None = None
     """velocities of the material of a turning body along x, y and z, by name of the point [m/s]"""
     outer_surface: OuterSurface | None = None
     """outer surface and its motion in the modes, needed for sound"""
-    circles: is_.PlaceTable | None = None
+    circles: is_.VectorTable | None = None
     """circles along which others may slide, by name of a point: radius and its abscissa [m], direction there"""
     drawn: Drawn | None = None
     """surface drawn in films, and its motion in the modes"""
