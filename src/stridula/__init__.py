@@ -57,6 +57,7 @@ _HOME = {
         "Profile",
         "RateAndState",
         "RigidTrack",
+        "RunOut",
         "StaticKinetic",
         "Stribeck",
         "SurfaceContact",

@@ -102,6 +102,7 @@ from .contact import PowerStiffness as PowerStiffness
 from .contact import Profile as Profile
 from .contact import RateAndState as RateAndState
 from .contact import RigidTrack as RigidTrack
+from .contact import RunOut as RunOut
 from .contact import StaticKinetic as StaticKinetic
 from .contact import Stribeck as Stribeck
 from .contact import SurfaceContact as SurfaceContact

@@ -74,8 +74,9 @@ def _touched(contact: Any, system: Any) -> str:
     """Return both sides of a contact, its place and its friction law, in words."""
     rigid = contact.rigid_track
     other = system.body_name(contact.track_body) if rigid is None else rigid.words
+    other += " with a profile" if contact.profile is not None else ""
     has_places = contact.path_body is not None or contact.circle is not None
-    has_places |= rigid is not None and rigid.profile is not None
+    has_places |= contact.relief is not None
     where = f" at {contact.at:.4g} m" if has_places else ""
     gap = f", gap {contact.gap:.3g} m" if abs(contact.gap) > CLOSED else ""
     return f"{system.body_name(contact.tip.body)} on {other}{where}, {contact.friction_words}{gap}"

@@ -102,6 +102,22 @@ def check_brake_shim(names: Mapping[str, Any], printed: str, folder: Path) -> No
     assert (folder / "brake_shim.png").read_bytes().startswith(b"\x89PNG")
 
 
+def check_brake_judder(names: Mapping[str, Any], printed: str, folder: Path) -> None:
+    """The torque varies at twice the speed, and the axle shakes after its resonance was passed."""
+    torque, time, speed = names["torque"]["15 µm"], names["time"], names["speed"]
+    steady = names["torque"]["0 µm"]
+    assert np.ptp(steady) < 0.02 * steady.mean()
+    assert np.ptp(torque) > 0.2 * steady.mean()
+    # The pad touches highest where the flat disc would be.
+    assert torque.max() < 1.01 * steady.mean()
+    rises = np.flatnonzero((torque[:-1] < np.median(torque)) & (torque[1:] >= np.median(torque)))
+    turned = np.trapezoid(speed[rises[0] : rises[-1]], time[rises[0] : rises[-1]])
+    assert turned / np.pi == pytest.approx(rises.size - 1, abs=0.1)
+    own = 0.5 * np.sqrt(names["AXLE"] / names["AXLE_MASS"])
+    assert 0.8 * own < names["worst"] < own
+    assert "thick places a second" in printed
+
+
 def check_wheel_ring(names: Mapping[str, Any], printed: str, folder: Path) -> None:
     """A heavier ring leaves less growth; runs grow and decay as linear theory says."""
     growths = [float(growth) for growth in re.findall(r"kg: (\S+) /s", printed)]
@@ -300,6 +316,7 @@ CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
     "stick_on_a_plate.py": check_stick_on_a_plate,
     "ten_lines.py": check_ten_lines,
     "violin.py": check_violin,
+    "brake_judder.py": check_brake_judder,
     "wheel_ring.py": check_wheel_ring,
     "wine_glass.py": check_wine_glass,
 }

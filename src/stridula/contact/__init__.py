@@ -13,6 +13,7 @@ from .profile import Profile
 from .random_fields import random_field
 from .rate_and_state import RateAndState
 from .rigid_track import RigidTrack
+from .run_out import RunOut
 from .stiffness import STIFFNESSES, ContactStiffness, HertzStiffness, LinearStiffness, PowerStiffness
 from .surface_contact import SurfaceContact
 from .surface_points import SurfacePoints
@@ -41,6 +42,7 @@ __all__ = [
     "Profile",
     "RateAndState",
     "RigidTrack",
+    "RunOut",
     "StaticKinetic",
     "Stribeck",
     "SurfaceContact",

@@ -21,6 +21,7 @@ from .elastic import ElasticFriction, check_in_series
 from .friction_law import FrictionLaw
 from .heating import Heating, check_heating
 from .laws import check_friction
+from .profile import Profile
 from .rigid_track import RigidTrack
 from .stiffness import ContactStiffness, checked_stiffness
 
@@ -83,6 +84,10 @@ class PointContact:
         if left out.
     heating : HeatedLayers or TemperatureHistory, optional
         Temperature of the contact, on which its friction may depend: heat of friction in layers, or a given history.
+    profile : Profile, optional
+        Height of the surface of the touched body, towards the tip, over the place along its first tangent, in its
+        material: the run-out of a disc that turns, the corrugation of a rail. The tip starts at the place `at`. Flat
+        if left out; a `RigidTrack` has its own.
 
     Notes
     -----
@@ -105,6 +110,7 @@ class PointContact:
     surface: str = ""
     area: Annotated[float, Number("m2", least=0.0)] = 0.0
     heating: Heating | None = None
+    profile: Profile | None = None
 
     def __post_init__(self) -> None:
         instance("tip", self.tip, BodyPoint)
@@ -131,6 +137,10 @@ class PointContact:
             raise ArgumentError("area", "be given under friction that depends on the pressure", self.area)
         check_heating(self.heating, self.friction.depends_on_temperature)
         self._check_place()
+        if self.profile is not None:
+            instance("profile", self.profile, Profile)
+            if self.rigid_track is not None:
+                raise ArgumentError("profile", "be left out on a rigid track, which has its own", self.profile)
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
         if self.tangential_stiffness is not None:
             check_in_series(self.friction, self.tangential_stiffness)
@@ -278,6 +288,11 @@ class PointContact:
     def has_state_vector(self) -> bool:
         """Whether the internal state of its friction law has a component along each of two tangents."""
         return self.is_spatial and self.law.state_is_vector
+
+    @property
+    def relief(self) -> Profile | None:
+        """The profile of the surface on which it slides, None if that is flat."""
+        return self.profile if self.rigid_track is None else self.rigid_track.profile
 
     @property
     def rigid_track(self) -> RigidTrack | None:

@@ -186,6 +186,12 @@ class Profile:
         return np.asarray(((place < low) | (place > high)) & (not self.periodic))
 
     @cached_property
+    def highest(self) -> float:
+        """Largest height of its surface [m]."""
+        tops = self._spline.derivative().roots(extrapolate=False)
+        return float(self._spline(np.concatenate([self.place, tops[np.isfinite(tops)]])).max())
+
+    @cached_property
     def steepest(self) -> float:
         """Largest slope of its surface [1]."""
         bends = self._spline.derivative(2).roots(extrapolate=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Annotated, Any
 
@@ -18,12 +18,14 @@ from ..bodies.solids.places import FacePoints
 from ..checks import ArgumentError, choice, counted, finite, instance
 from ..declared import Each, Number, Position, check_declared
 from ..doubtful import warn_of
+from .axes import Axis
 from .coulomb import Coulomb
 from .facing import BEFORE
 from .friction_law import FrictionLaw
 from .heating import Heating, check_heating
-from .point_contact import PointContact
+from .point_contact import ALONG_X, PointContact
 from .rigid_track import RigidTrack
+from .run_out import RunOut
 from .stiffness import ContactStiffness, checked_stiffness, per_area
 
 # With more points than this on a face, a note mentions the time that a run takes.
@@ -86,6 +88,10 @@ class SurfaceContact:
     heating : HeatedLayers or TemperatureHistory, optional
         Temperature of the face, on which its friction may depend: layers of the whole face, which its points share by
         their areas without heat from one to the next, or a given history.
+    run_out : RunOut, optional
+        Height of the surface of a track that turns, over the angle about its axis: in a body of revolution the angle
+        of its points, on a meshed track that from the world x axis (z if the axis is along x) about the axis of
+        `turning`. Its highest point is where the flat surface would be.
 
     Raises
     ------
@@ -109,6 +115,7 @@ class SurfaceContact:
     turning: tuple[Sequence[float], Sequence[float], float] | None = None
     wear: Annotated[Sequence[float], Each(Number("m", least=0.0))] | None = None
     heating: Heating | None = None
+    run_out: RunOut | None = None
 
     def __post_init__(self) -> None:
         instance("body", self.body, (SolidBody, ReducedBody))
@@ -131,6 +138,10 @@ class SurfaceContact:
         check_declared(self)
         if self.turning is not None:
             object.__setattr__(self, "turning", self._checked_turning(self.turning))
+        if self.run_out is not None:
+            instance("run_out", self.run_out, RunOut)
+            if self._axis is None:
+                raise ArgumentError("run_out", "be left out on a track that does not turn", self.run_out)
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
         if len(self._laws) != self.areas.size:
             words = f"be one law, or have {self.areas.size}, one for each point"
@@ -215,7 +226,37 @@ class SurfaceContact:
                 area=area,
             )
             found.append(contact)
-        return tuple(found)
+        return tuple(found if self.run_out is None else self._on_run_out(found))
+
+    def _on_run_out(self, contacts: list[PointContact]) -> list[PointContact]:
+        """Return the contacts on a track that is not flat: its highest point touches where the flat one would."""
+        run_out, axis = self.run_out, self._axis
+        assert run_out is not None
+        assert axis is not None
+        reach = ON_THE_AXIS * float(np.ptp(self.places, axis=0).max())
+        found = []
+        for contact, place in zip(contacts, self.places, strict=True):
+            radius, angle = axis.around(place)
+            profile = run_out.around(radius, axis.sense) if radius > reach else None
+            low = max(run_out.highest - float(run_out.height_at(angle)), 0.0)
+            found.append(replace(contact, gap=contact.gap + low, at=axis.sense * radius * angle, profile=profile))
+        return found
+
+    @cached_property
+    def _axis(self) -> Axis | None:
+        """The axis about which the track turns, None if it does not."""
+        if self.turning is not None:
+            direction, origin, speed = self.turning
+            axial = np.array(direction)
+            along = np.array([1.0, 0.0, 0.0] if abs(axial[0]) < ALONG_X else [0.0, 0.0, 1.0])
+            first = along - (along @ axial) * axial
+            first /= np.linalg.norm(first)
+            return Axis(np.array(origin), first, np.cross(axial, first), math.copysign(1.0, speed))
+        speed = getattr(self.track, "turning", 0.0)
+        if not speed:
+            return None
+        first, second, _ = self.track.frame
+        return Axis(np.array(self.track.origin), first, second, math.copysign(1.0, speed))
 
     @cached_property
     def _gaps(self) -> Array | None:

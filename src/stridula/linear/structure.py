@@ -68,6 +68,8 @@ class Structure:
         The system.
     time : float, optional
         Time at which drives are evaluated [s]; if left out, after they have become constant.
+    on_profiles : bool, optional
+        Whether tracks may have profiles, which then stand still: their heights are in the gaps.
 
     Attributes
     ----------
@@ -98,9 +100,10 @@ class Structure:
         If no time is given and a history never becomes constant.
     """
 
-    def __init__(self, system: System, time: float | None = None) -> None:
+    def __init__(self, system: System, time: float | None = None, on_profiles: bool = False) -> None:
         _check_circles(system)
-        check_flat(system, "in linear theory and in equilibrium")
+        if not on_profiles:
+            check_flat(system, "in linear theory, and in equilibrium unless its contact has a stiffness")
         self.system, self.arrays = system, assemble(system)
         self._known: dict[Any, Any] = {}
         settled = settled_time(system) if time is None else time
@@ -392,9 +395,9 @@ def _check_circles(system: System) -> None:
 def check_flat(system: System, where: str) -> None:
     """Raise if a track has a profile, over which no sliding is steady."""
     for name, contact in zip(system.contact_names, system.contacts, strict=True):
-        if contact.rigid_track is not None and contact.rigid_track.profile is not None:
+        if contact.relief is not None:
             got = f"a profile under {name}, over which no sliding is steady"
-            raise ArgumentError("track.profile", f"be left out {where}", got=got)
+            raise ArgumentError("track.profile" if contact.rigid_track else "profile", f"be left out {where}", got=got)
 
 
 def _aside(one: ContactRows, shift: float) -> tuple[Array, Array]:

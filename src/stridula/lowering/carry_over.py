@@ -12,7 +12,7 @@ from .._kernels.layout import columns as at
 from ..arrays import Array
 from ..bodies import AxisymmetricBody, BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate
 from ..connections import held_motions
-from ..contact import PointContact, Profile
+from ..contact import PointContact
 from ..records.state import State
 from ..system import System
 from .assembly import Assembly
@@ -103,16 +103,12 @@ def _is_like_contact(before: PointContact, now: PointContact) -> bool:
         (before.gap, before.inclination) == (now.gap, now.inclination)
         and (before.path_body is None) == (now.path_body is None)
         and (before.rigid_track is None) == (now.rigid_track is None)
-        and _profile_of(before) == _profile_of(now)
+        and before.relief == now.relief
         and before.yields == now.yields
         and (now.path_body is not None or before.at == now.at)
         and _is_like_point(before.tip, now.tip)
         and _is_like_point(before.touched_point, now.touched_point)
     )
-
-
-def _profile_of(contact: PointContact) -> Profile | None:
-    return None if contact.rigid_track is None else contact.rigid_track.profile
 
 
 def _is_like_point(before: BodyPoint | None, now: BodyPoint | None) -> bool:

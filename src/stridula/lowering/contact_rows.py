@@ -105,7 +105,7 @@ class ContactRows:
     @property
     def profile(self) -> Profile | None:
         """Shape of the surface of its track, None if it is flat."""
-        return None if self.contact.rigid_track is None else self.contact.rigid_track.profile
+        return self.contact.relief
 
     def height_at(self, place: float) -> float:
         """Return the height of the surface of its track at a place along its material [m]."""

@@ -90,7 +90,10 @@ class Coordinates:
     def modes(self, body: Any) -> Modes:
         """Return the modes of a body."""
         if id(body) not in self.known:
-            self.known[id(body)] = body.modes(self.system.is_held(body))
+            try:
+                self.known[id(body)] = body.modes(self.system.is_held(body))
+            except ArgumentError as error:
+                raise error.inside(self.system.body_name(body)) from None
         return self.known[id(body)]
 
     def full(self, body: Any, numbers: Array) -> Array:

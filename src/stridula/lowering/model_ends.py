@@ -92,7 +92,7 @@ def _frictionless(system: System) -> Iterator[str]:
 def _steep(system: System) -> Iterator[str]:
     """Yield notes on profiles whose slopes are not small."""
     for name, contact in zip(system.contact_names, system.contacts, strict=True):
-        profile = contact.rigid_track and contact.rigid_track.profile
+        profile = contact.relief
         if profile and profile.steepest >= STEEP:
             yield f"{name}: its profile is as steep as {profile.steepest:.2g}; forces keep the directions of the plane"
 

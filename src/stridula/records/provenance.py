@@ -145,6 +145,8 @@ def _contact(contact: PointContact) -> dict[str, Any]:
     for name in ("inclination", "name", "normal", "tangent", "surface_velocity", "surface", "area", *joint):
         if getattr(contact, name):
             given[name] = _value(getattr(contact, name))
+    if contact.profile is not None:
+        given["profile"] = _plain(contact.profile)
     if contact.heating is not None:
         given["heating"] = {"kind": contact.heating.kind, **_plain(contact.heating)}
     if contact.yields is not None:

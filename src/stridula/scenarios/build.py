@@ -32,7 +32,7 @@ from ..bodies.drawn_surfaces import drawn_of
 from ..bodies.sections import SECTIONS
 from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, listed, suggestion
-from ..contact import HEATINGS, LAWS, STIFFNESSES, PointContact, Profile, RigidTrack, SurfaceContact
+from ..contact import HEATINGS, LAWS, STIFFNESSES, PointContact, Profile, RigidTrack, RunOut, SurfaceContact
 from ..declared import declared
 from ..disk import is_there
 from ..drives import Drive
@@ -57,6 +57,7 @@ PROBES = {probe.quantity: probe for probe in probes.PROBES}
 FRICTIONS: dict[str, Callable[..., Any]] = {law.law: law for law in LAWS}
 HEATED: dict[str, Callable[..., Any]] = {kind.kind: kind for kind in HEATINGS}
 STIFFNESS: dict[str, Callable[..., Any]] = {kind.kind: kind for kind in STIFFNESSES}
+SHAPES_OF_SURFACE: dict[str, Callable[..., Any]] = {"profile": Profile, "run_out": RunOut}
 CONNECTIONS: dict[str, Callable[..., Any]] = {connection.kind: connection for connection in connections.CONNECTIONS}
 Tables = dict[str, Any]
 Place = tuple[str | int, ...]
@@ -283,10 +284,14 @@ class Builder:
             return ModalPlate(material, **table)
 
     def _of_contact(self, path: Place, table: Tables) -> dict[str, Any]:
-        """Remove friction, stiffness and heating from the table of a contact, and return them built."""
+        """Remove friction, stiffness, heating and the shape of the surface from a table, and return them built."""
         heated = table.get("heating") is not None
         found = self._friction(path, table) | self._of_kind("stiffness", STIFFNESS, path, table)
         found |= self._of_kind("heating", HEATED, path, table)
+        for name in SHAPES_OF_SURFACE:
+            given = table.pop(name, None)
+            if given is not None:
+                found[name] = self._shape((*path, name), given)
         if heated and "heating" not in found:
             # Friction would ask for the heating, whose problem is known.
             found.pop("friction", None)
@@ -373,13 +378,13 @@ class Builder:
             if table.get(name) is not None:
                 table[name] = self._history((*path, name), table[name])
         if table.get("profile") is not None:
-            table["profile"] = self._profile((*path, "profile"), table["profile"])
+            table["profile"] = self._shape((*path, "profile"), table["profile"])
         with self._within(*path):
             return RigidTrack(**{name: value for name, value in table.items() if value is not None})
 
-    def _profile(self, path: Place, table: Tables) -> Any:
+    def _shape(self, path: Place, table: Tables) -> Any:
         with self._within(*path):
-            return made_or_read(Profile, table)
+            return made_or_read(SHAPES_OF_SURFACE[str(path[-1])], table)
         return None
 
     def _circle(self, path: Place, table: Tables) -> Any:

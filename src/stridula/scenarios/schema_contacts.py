@@ -17,6 +17,7 @@ from ..contact import (
     PointContact,
     Profile,
     RigidTrack,
+    RunOut,
     SurfaceContact,
 )
 from . import fields as is_
@@ -43,7 +44,10 @@ if TYPE_CHECKING:
     Heating = Any
     Stiffness = Any
     StiffnessOfArea = Any
+    Relief = Any
 else:
+    _repeats = {"periodic": (bool, False, "whether it repeats: the last point is then the first of the next period")}
+    Relief = table_of(Profile, after=_repeats, from_file=from_file(Profile))
     _laws = [
         table_of(law, "law", law.law, "law of friction", is_usual=law is Coulomb, from_file=from_file(law))
         for law in LAWS
@@ -88,6 +92,8 @@ class PairContact(Table):
     """damping beside this stiffness [N s/m]"""
     heating: Heating | None = None
     """temperature of the contact, on which its friction may depend; none if left out"""
+    profile: Relief | None = None
+    """height of the track's surface over the place along it; flat if left out"""
     point: is_.Point = "tip"
     """point of the slider that touches: tip, root or a position from the tip [m]"""
     name: str = ""
@@ -172,9 +178,7 @@ else:
         "normal_history": (History | None, None, "the same along its normal"),
         "name": (str, "", "name in records"),
     }
-    _repeats = {"periodic": (bool, False, "whether it repeats: the last point is then the first of the next period")}
-    _profile = table_of(Profile, after=_repeats, from_file=from_file(Profile))
-    _shaped = _moved | {"profile": (_profile | None, None, "height of its surface over the place; flat if left out")}
+    _shaped = _moved | {"profile": (Relief | None, None, "height of its surface over the place; flat if left out")}
     _rigid = table_of(RigidTrack, "kind", "rigid", "beam, plate, rigid, point or circle", title="Rigid", after=_shaped)
     _sides = {
         "name": (str, "", "name in records"),
@@ -189,6 +193,12 @@ else:
     _friction["surface"] = (str, "", "name of the surface to which the point belongs, which may lift off in part")
     _friction["stiffness"] = (Stiffness | None, None, YIELDS)
     _friction["heating"] = (Heating | None, None, HEATS)
+    _friction["profile"] = (
+        Relief | None,
+        None,
+        "height of the surface of a body that is touched over the place along it; flat if left out",
+    )
+    _run_out = table_of(RunOut, from_file=from_file(RunOut))
     _plane = table_of(RigidTrack, "kind", "rigid", "axisymmetric, solid or rigid", title="Plane", after=_moved)
     _faces = {
         "name": (str, ..., "name in records, to which points add their numbers"),
@@ -200,6 +210,11 @@ else:
         "friction": _friction["friction"],
         "stiffness": (StiffnessOfArea | None, None, OF_AREA),
         "heating": _friction["heating"],
+        "run_out": (
+            _run_out | None,
+            None,
+            "height of the surface of a track that turns over the angle; flat if left out",
+        ),
         "overlay": (
             bool,
             False,
