@@ -219,6 +219,25 @@ def test_the_highest_point_of_a_surface_is_where_it_would_be_if_it_were_flat():
     np.testing.assert_allclose(gaps, plain + 15e-6 - heights, atol=1e-12)
 
 
+def test_a_pad_follows_the_bumps_of_a_plane():
+    bumps = st.Profile.random(rms=5e-6, correlation_length=0.06, length=0.6, seed=3)
+    mesh = st.SolidMesh.block((0.06, 0.015, 0.03), (3, 1, 2)).moved((0.2, 0.0, -0.015))
+    pad = st.SolidBody(mesh, STEEL, fixed={"top": "xz"}, cutoff=3e4, damping=0.05, contact_faces={"bottom": (3, 3)})
+    speed = -0.6
+    face = st.SurfaceContact(pad, "bottom", st.RigidTrack(velocity=speed, profile=bumps), stiffness=1e11)
+    drives = [st.Force(pad.at("top"), y=-4e3), st.InitialEquilibrium()]
+    joints = [st.Dashpot(pad.at("top"), coefficient=3e3, direction="y")]
+    probe = st.Displacement(pad.at("bottom"), "y")
+    run = checked(st.simulate(st.System(face, drives, joints), 0.5, probes=[probe], sample_rate=1e3))
+    x, _, z = face.places.T
+    heights = bumps.height_at(x[None] - 0.23 - speed * run.time.values[:, None])
+    plane = np.stack([np.ones(x.size), x - x.mean(), z - z.mean()], axis=1)
+    mean = np.linalg.lstsq(plane, heights.T, rcond=None)[0][0]
+    moved = run.displacement.values[:, 0]
+    assert np.ptp(mean) > 1e-5
+    assert np.abs((moved - moved.mean()) - (mean - mean.mean())).max() < 0.02 * np.ptp(mean)
+
+
 def test_a_table_of_one_turn_is_closed_and_read(tmp_path):
     degrees = np.arange(0.0, 360.0, 5.0)
     height = 12e-6 * np.cos(np.radians(degrees) + 0.3)

@@ -24,6 +24,7 @@ from .facing import BEFORE
 from .friction_law import FrictionLaw
 from .heating import Heating, check_heating
 from .point_contact import ALONG_X, PointContact
+from .profile import Profile
 from .rigid_track import RigidTrack
 from .run_out import RunOut
 from .stiffness import ContactStiffness, checked_stiffness, per_area
@@ -55,7 +56,7 @@ class SurfaceContact:
         Name of the face.
     track : AxisymmetricBody, SolidBody or RigidTrack
         Body or plane on which it slides. A rigid track is a plane through the foremost points of the face,
-        perpendicular to its mean normal.
+        perpendicular to its mean normal; places along its profile are counted from the middle of the face.
     track_face : str, optional
         Touched face, if the track is a `SolidBody`.
     friction : FrictionLaw or sequence of FrictionLaw, optional
@@ -123,8 +124,6 @@ class SurfaceContact:
             raise ArgumentError("overlay", "be False for a ReducedBody", self.overlay)
         choice("face", self.face, self.body.face_names or ("none",))
         instance("track", self.track, (AxisymmetricBody, SolidBody, RigidTrack))
-        if self.track.kind == RigidTrack.kind and self.track.profile is not None:
-            raise ArgumentError("track.profile", "be left out under a face, whose points have no places along it")
         instance("overlay", self.overlay, bool)
         if self.track.kind == SolidBody.kind:
             choice("track_face", self.track_face, self.track.face_names or ("none",))
@@ -226,7 +225,21 @@ class SurfaceContact:
                 area=area,
             )
             found.append(contact)
-        return tuple(found if self.run_out is None else self._on_run_out(found))
+        if self.run_out is not None:
+            return tuple(self._on_run_out(found))
+        is_flat = self.track.kind != RigidTrack.kind or self.track.profile is None
+        return tuple(found if is_flat else self._on_profile(found, self.track.profile))
+
+    def _on_profile(self, contacts: list[PointContact], profile: Profile) -> list[PointContact]:
+        """Return the contacts on a plane that is not flat, as near to it as to a flat one."""
+        middle = self.areas @ self.places / self.areas.sum()
+        along = [
+            float(contact.frame[1] @ (place - middle)) for contact, place in zip(contacts, self.places, strict=True)
+        ]
+        gaps = np.array([contact.gap for contact in contacts])
+        over = gaps - profile.height_at(np.array(along))
+        over += gaps.min() - over.min()
+        return [replace(one, at=at, gap=gap) for one, at, gap in zip(contacts, along, over.tolist(), strict=True)]
 
     def _on_run_out(self, contacts: list[PointContact]) -> list[PointContact]:
         """Return the contacts on a track that is not flat: its highest point touches where the flat one would."""
