@@ -242,3 +242,24 @@ def test_modes_beyond_every_cutoff_are_flagged():
     assert [words in one.attrs["notes"] for one in (soft, fast, stiff)] == [False, False, True]
     # Without a cutoff nothing lies beyond.
     assert not st.sliding_stability(pressed(st.RigidTrack(velocity=1.0))).beyond_cutoff.any()
+
+
+def test_meshes_without_residual_shapes_of_a_face_in_contact_are_noted():
+    """A pad on a block: each side without the residual shapes of its face is named."""
+    steel = st.Material(210e9, 7800.0)
+    mesh = st.SolidMesh.block((0.04, 0.01, 0.03), (2, 1, 2))
+
+    def noted(**faces):
+        lower = st.SolidBody(
+            mesh, steel, fixed=["bottom"], cutoff=9e4, contact_faces=faces.get("lower", ()), name="base"
+        )
+        upper = st.SolidBody(
+            mesh.moved((0.0, 0.01, 0.0)), steel, cutoff=9e4, contact_faces=faces.get("upper", ()), name="pad"
+        )
+        face = st.SurfaceContact(upper, "bottom", lower, "top", st.Coulomb(0.3), stiffness=1e11)
+        return notes(st.System(face, [st.Force(upper.at("top"), y=-100.0)]))
+
+    words = "too stiff in contact without residual shapes, which contact_faces gives: {}"
+    assert words.format("'bottom' of pad, 'top' of base") in noted(upper=["top"])
+    assert words.format("'top' of base") in noted(upper=["bottom"])
+    assert "residual shapes" not in noted(upper=["bottom"], lower=["top"])

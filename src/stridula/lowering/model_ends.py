@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..bodies import SolidBody
 from ..checks import listed
 from ..system import System
 from .assembly import Assembly
@@ -31,7 +32,8 @@ MOST_MODES = 300
 def notes_of(system: System, arrays: Assembly, duration: float) -> list[str]:
     """Return the notes on a system that is simulated for a duration [s]."""
     near = _near_cutoff(system, arrays, duration)
-    return [*_bodies(system), *_at_rest(system), *_frictionless(system), *_steep(system), *near]
+    whole = (_bodies, _at_rest, _frictionless, _steep, _stiff_faces)
+    return [*(note for notes in whole for note in notes(system)), *near]
 
 
 def _bodies(system: System) -> Iterator[str]:
@@ -67,6 +69,19 @@ def _at_rest(system: System) -> Iterator[str]:
     turning = [system.body_name(face.track) for face in faces if getattr(face, "turning", None) is not None]
     if turning:
         yield f"turning meshes whose waves are not carried round: {_once(turning)}"
+
+
+def _stiff_faces(system: System) -> Iterator[str]:
+    """Yield a note on meshes that miss the residual shapes of a face in contact."""
+    faces: list[Any] = [one for one in system.faces if hasattr(one, "face")]
+    sides = [side for one in faces for side in ((one.body, one.face), (one.track, one.track_face))]
+    missing = [
+        f"{name!r} of {system.body_name(body)}"
+        for body, name in sides
+        if body.kind == SolidBody.kind and name not in body.contact_faces
+    ]
+    if missing:
+        yield f"too stiff in contact without residual shapes, which contact_faces gives: {_once(missing)}"
 
 
 def _frictionless(system: System) -> Iterator[str]:
