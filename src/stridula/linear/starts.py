@@ -99,7 +99,7 @@ def at_rest(system: System, asked: InitialEquilibrium) -> tuple[Structure, Struc
         If there is no such equilibrium.
     """
     soft = all(one.yields is not None for one in system.contacts if one.relief is not None)
-    whole = Structure(system, 0.0, on_profiles=soft and asked.mode is None)
+    whole = Structure(system, 0.0, on_profiles=soft)
     status = given_status(asked.status, system)
     structure, at = _settled(whole, given_velocity(asked.velocity, whole, status), status)
     _check(structure, at, status)

@@ -397,7 +397,8 @@ def check_flat(system: System, where: str) -> None:
     for name, contact in zip(system.contact_names, system.contacts, strict=True):
         if contact.relief is not None:
             got = f"a profile under {name}, over which no sliding is steady"
-            raise ArgumentError("track.profile" if contact.rigid_track else "profile", f"be left out {where}", got=got)
+            argument = "track.profile" if contact.rigid_track else "run_out" if contact.surface else "profile"
+            raise ArgumentError(argument, f"be left out {where}", got=got)
 
 
 def _aside(one: ContactRows, shift: float) -> tuple[Array, Array]:
