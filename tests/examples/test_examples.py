@@ -118,6 +118,20 @@ def check_brake_judder(names: Mapping[str, Any], printed: str, folder: Path) -> 
     assert "thick places a second" in printed
 
 
+def check_vented_disc(names: Mapping[str, Any], printed: str, folder: Path) -> None:
+    """A solid disc is the same at every angle; a vented one repeats with its vanes, and grows between some only."""
+    solid, vented = names["worst"]["solid"], names["worst"]["vented"]
+    assert np.ptp(solid) < 0.1 * solid.mean()
+    assert solid.min() > 0.0
+    assert 0.1 < np.mean(vented > 0.0) < 0.5
+    turn = vented.size // 2
+    np.testing.assert_allclose(vented[[0, -1]], vented[turn], rtol=0.05)
+    lost = names["solid"].volume.sum() - names["vented"].volume.sum()
+    ring = np.pi * (names["RIM"] ** 2 - names["BORE"] ** 2) * names["THICK"]
+    assert lost == pytest.approx(ring / 6.0, rel=0.02)
+    assert "solid: at most" in printed
+
+
 def check_wheel_ring(names: Mapping[str, Any], printed: str, folder: Path) -> None:
     """A heavier ring leaves less growth; runs grow and decay as linear theory says."""
     growths = [float(growth) for growth in re.findall(r"kg: (\S+) /s", printed)]
@@ -317,6 +331,7 @@ CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
     "ten_lines.py": check_ten_lines,
     "violin.py": check_violin,
     "brake_judder.py": check_brake_judder,
+    "vented_disc.py": check_vented_disc,
     "wheel_ring.py": check_wheel_ring,
     "wine_glass.py": check_wine_glass,
 }

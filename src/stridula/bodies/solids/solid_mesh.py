@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -22,6 +22,7 @@ from ..matrix_input import check_finite, numbers
 from ..reading.finite import check_finite_in
 from . import mesh_files, shapes
 from .assembly import assembly
+from .cutting import without
 from .elements import check_elements, volumes
 from .kinds import KINDS, ElementKind, outer_faces
 from .mesh_quality import scaled_jacobians
@@ -386,6 +387,44 @@ class SolidMesh:
             )
         matrix = scipy.spatial.transform.Rotation.from_rotvec(turn).as_matrix()
         return replace(self, nodes=self.nodes @ matrix.T + np.array(shift))
+
+    def cut(self, inside: Callable[[Array], Any], name: str = "cut") -> SolidMesh:
+        """Return the mesh without the elements whose middles are in a region: holes, slots, vanes, chamfers.
+
+        Parameters
+        ----------
+        inside : callable
+            Takes places, shape (elements, 3) [m], and returns whether each is in the region.
+        name : str, optional
+            Name of the faces that come to the surface.
+
+        Raises
+        ------
+        ValueError
+            If no element is left, if none is in the region, if what is left forms several parts, or if the mesh has
+            ties: cut its parts first.
+
+        Examples
+        --------
+        >>> disc = st.SolidMesh.sector((0.05, 0.13), (0.0, 2.0 * np.pi), 0.02, (4, 48, 2))
+        >>> drilled = disc.cut(lambda place: np.hypot(place[:, 0] - 0.1, place[:, 2]) < 0.01, "hole")
+        >>> print(len(disc.elements) - len(drilled.elements), drilled.face("hole"))
+        4 Face(12 faces of elements, 0.001846 m²)
+        """
+        if self.ties:
+            raise ArgumentError("ties", "be left out: cut the parts before they are tied", self.ties)
+        instance("name", name, str)
+        if name in self.faces:
+            raise ArgumentError("name", "be that of no face yet", name)
+        middles = self.nodes[self.elements[:, : len(self.element_kind.corners)]].mean(axis=1)
+        removed = np.asarray(inside(middles))
+        if removed.shape != (len(middles),) or removed.dtype != bool:
+            got = f"{removed.dtype} of the shape {removed.shape}"
+            raise ArgumentError("inside", f"return a truth value for each of {len(middles)} places", got=got)
+        if not removed.any() or removed.all():
+            got = "none" if not removed.any() else "all"
+            raise ArgumentError("inside", "hold the middles of some elements, not of all", got=got)
+        return replace(self, **without(self, removed, name))
 
     def named(self, name: str, nodes: Any) -> SolidMesh:
         """Return the mesh with an additional set of nodes, such as ``np.flatnonzero(mesh.nodes[:, 2] == 0.0)``."""
