@@ -436,7 +436,7 @@ def check_measures() -> None:
 def copy_examples() -> None:
     """Copy the scripts of the galleries with their headers, decks and tables, and forget those that are no more."""
     for name, folder in GALLERIES.items():
-        kinds = ("py", "rst", "inp", "csv")
+        kinds = ("py", "rst", "inp", "csv", "sti", "mas", "dof")
         sources = {path.name: path for kind in kinds for path in folder.glob(f"*.{kind}")}
         for old in (GENERATED / "examples" / name).glob("*"):
             if old.name not in sources:
