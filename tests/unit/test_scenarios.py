@@ -98,7 +98,7 @@ def test_another_shape_starts_a_section_afresh():
         (
             {"contact": 1},
             "set one of its keys at, friction, gap, stiffness, tangential_stiffness, tangential_damping, heating, "
-            "point, name",
+            "profile, point, name",
         ),
         ({"angle": "20 mm"}, "slider.angle must be a number in rad or deg, got '20 mm'"),
         ({"angle": "95 deg"}, "slider.angle must be strictly between -pi/2 and pi/2"),

@@ -211,7 +211,10 @@ def test_notes_name_ends_and_steep_slopes():
         st.sliding_stability,
         st.limit_cycle,
         st.lyapunov_exponent,
-        lambda system: st.simulate(replace(system, drives=(st.InitialEquilibrium(), system.drives[0])), 0.01),
+        # A contact without a stiffness cannot start in equilibrium either.
+        lambda system: st.simulate(
+            st.System(replace(system.contact, stiffness=None), [*system.drives, st.InitialEquilibrium()]), 0.01
+        ),
     ],
 )
 def test_questions_of_steady_sliding_are_refused(ask):
@@ -219,11 +222,15 @@ def test_questions_of_steady_sliding_are_refused(ask):
         ask(on_belt(ROUGH))
 
 
-def test_faces_refuse_a_profile():
-    block = st.SolidBody.block((0.02, 0.01, 0.02), (1, 1, 1), st.Material(2.1e11, 7800.0, 0.3), cutoff=30e3)
-    face = next(iter(block.face_names))
-    with pytest.raises(st.ArgumentError, match=r"^track.profile must be left out under a face"):
-        st.SurfaceContact(block, face, st.RigidTrack(profile=ROUGH))
+def test_points_of_a_face_have_places_about_its_middle():
+    block = st.SolidBody.block((0.02, 0.01, 0.02), (2, 1, 1), st.Material(2.1e11, 7800.0, 0.3), cutoff=80e3)
+    face = st.SurfaceContact(block, "bottom", st.RigidTrack(profile=ROUGH))
+    along = np.array([one.at for one in face.contacts])
+    np.testing.assert_allclose(along, face.places[:, 0] - 0.01, atol=1e-15)
+    gaps = np.array([one.gap for one in face.contacts])
+    heights = ROUGH.height_at(along)
+    # It starts as near to the surface as to a flat one.
+    np.testing.assert_allclose(gaps, heights.max() - heights, atol=1e-15)
 
 
 def test_a_live_march_stays_on_the_profile_and_begins_anew_on_another():
