@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 import stridula as st
 from ratios import Ratio, over, seconds, show, sized
@@ -28,6 +30,22 @@ from systems import (
 
 TITLE = "scaling"
 SAMPLES, RATIO = sized(200, 10), 100
+
+
+@dataclass(frozen=True)
+class Weakening(st.FrictionLaw):
+    """A law written by a user."""
+
+    static: float = 0.12
+    kinetic: float = 0.1
+    velocity: float = 0.1
+
+    def coefficient_at(self, velocity: np.ndarray) -> np.ndarray:
+        """Return the coefficients at slip velocities [m/s]."""
+        return self.kinetic + (self.static - self.kinetic) * np.exp(-np.abs(velocity) / self.velocity)
+
+
+SPEEDS = np.linspace(0.0, 5.0, 40)
 # Laws with about the ratio of the sliding case, and the largest time of a step over that under Coulomb's law.
 LAWS = {
     "exponential weakening": st.ExponentialWeakening(0.12, 0.1, 0.1),
@@ -35,8 +53,10 @@ LAWS = {
     "Stribeck, exponent 1.5": st.Stribeck(0.12, 0.1, 0.1, exponent=1.5),
     "LuGre": st.LuGre(0.12, 0.1, 0.1, stiffness=1e4, damping=10.0),
     "rate and state": st.RateAndState(0.1, 0.01, 0.008, 1e-4, 1e-2),
+    "a table": st.TabulatedFriction(SPEEDS, 0.1 + 0.02 * np.exp(-2.0 * SPEEDS)),
+    "a law of one's own": Weakening(),
 }
-LAW_BAR, LAW_MODES = 1.5, 60
+LAW_BARS, LAW_MODES = {"a table": 2.0, "a law of one's own": 2.0}, 60
 CONTACT_BARS = {2: 6.0, 8: 30.0}
 PLATES, PLATE_BAR = sized((100, 300), (100,)), 1.6
 
@@ -65,7 +85,7 @@ def laws() -> Iterator[Ratio]:
     first, *timed = seconds(*(stepping(one) for one in (system, *others)))
     for name, times in zip(LAWS, timed, strict=True):
         quantity = f"time of a step, {name} over Coulomb, some {LAW_MODES} modes"
-        yield Ratio(quantity, over(times, first), most=LAW_BAR)
+        yield Ratio(quantity, over(times, first), most=LAW_BARS.get(name, 1.5))
 
 
 def contacts() -> Iterator[Ratio]:

@@ -359,7 +359,7 @@ def test_harness_rejects_friction_with_the_wrong_sign():
         for _ in range(200):
             before = Before(2.0, slip, slip, 0.0, 10.0, 4.0, 0.0)
             free = Free(-10.0 * step**2, slip, 0.0, compliance, 0.0)
-            normal, tangential, status, _ = kernel.solve_contact.py_func(free, marched, before, step)
+            normal, tangential, status, *_ = kernel.solve_contact.py_func(free, marched, before, step)
             tangential *= sense
             slip -= tangential * step**2
             columns.append((normal, tangential, status, slip / step))

@@ -52,7 +52,7 @@ def coulomb(gap, slip, w, mu, last_slip=0.0):
 
 
 def solve(gap, slip, w, mu, last_slip=0.0):
-    normal, tangential, status, jammed = coulomb(gap, slip, w, mu, last_slip)
+    normal, tangential, status, jammed, _ = coulomb(gap, slip, w, mu, last_slip)
     after = np.array([gap, slip]) + w @ [normal, -tangential]
     return normal, tangential, status, jammed, after[0], after[1]
 
@@ -173,7 +173,7 @@ def test_harness_rejects_a_wrong_solve():
 def test_the_solve_without_branches_is_the_same(gap, slip, turn, flat, mu, last_slip):
     w = compliance(turn, flat)
     assume(clear_of_borders(gap, slip, w, mu) and clear_of_borders(gap, slip - last_slip, w, mu))
-    normal, tangential, status, jammed = coulomb(gap, slip, w, mu, last_slip)
+    normal, tangential, status, jammed, _ = coulomb(gap, slip, w, mu, last_slip)
     rows = Compliance(*w.ravel())
     other = solves.coulomb(float(gap), float(slip), rows, float(mu))
     turned = solves.turned_round(float(gap), float(slip), float(last_slip), rows, float(mu), other)

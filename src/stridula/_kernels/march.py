@@ -20,7 +20,7 @@ from .contacts.heating import set_laws
 from .lanes.compiled import entry, pasted
 from .lanes.operations import INTEGER, TRUTH, Runs, anywhere, choose, everywhere, held, hold, magnitude, placed
 from .layout import columns as at
-from .layout.contact_values import Compliance, Touch, Tried
+from .layout.contact_values import Compliance, Touch, Tried, Way
 from .layout.parts import Parts
 from .layout.rows import SINE, first_probe
 from .modes.coupled import energy_of
@@ -78,7 +78,8 @@ def march(single: bool | None, several: bool | None, space: bool | None, place: 
     sizes, timing, signals = parts.sizes, parts.timing, parts.imposed.signals
     begin(parts, runs)
     ended, completed = zero, zero
-    touch, tried = Touch(zero, zero, zero, zero), Tried(zero, zero, zero, Compliance(zero, zero, zero, zero))
+    touch = Touch(zero, zero, zero, zero, Way(zero, zero, zero))
+    tried = Tried(zero, zero, zero, Compliance(zero, zero, zero, zero))
     n, pending, sine, advance = INTEGER(0), TRUTH(False), INTEGER(SINE), zero
     for sample in range(parts.records.energies.shape[0]):
         begin_row(space, parts, runs)

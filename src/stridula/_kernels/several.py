@@ -25,7 +25,7 @@ from .contact.in_space import (
     whole_compliance,
 )
 from .contact.law_in_space import next_in_space
-from .contact.solves import law_of, strayed_in_plane
+from .contact.solves import carried_by, law_of, no_way, strayed_in_plane, way_of
 from .contact.tangents import along, held_along, hold_along
 from .contact.yielding import about_indentation, comes_close
 from .contacts.circles import convected
@@ -133,7 +133,7 @@ def keep_books_in_space(i: int, parts: Parts, n: int, runs: Runs) -> None:
     stuck, lost = runs.zero, runs.zero
     if not set_valued(law) or anywhere(status + before.status > 0.5):
         free = free_of_contact(i, parts, forces, runs)
-        touch = Touch(normal, along(forces, way), status, held(now, here + at.JAMMED_NOW, runs))
+        touch = Touch(normal, along(forces, way), status, held(now, here + at.JAMMED_NOW, runs), no_way(runs))
         closed = share_states(i, touch, free_along(free, way), gap, before, parts, runs)
         both = status, before.status
         keep_anchor(carried, base + at.MATERIAL, base + at.ANCHOR, law, slips.a, both, runs)
@@ -161,20 +161,23 @@ def keep_books_in_space(i: int, parts: Parts, n: int, runs: Runs) -> None:
 @pasted
 def keep_books_of(i: int, parts: Parts, n: int, runs: Runs) -> None:
     """Do the bookkeeping of contact `i` among several."""
-    now, here = parts.contacts.now, i * at.IN_STEP
-    touch = Touch(
-        held(now, here + at.NORMAL_NOW, runs),
-        held(now, here + at.TANGENTIAL_NOW, runs),
-        held(now, here + at.STATUS_NOW, runs),
-        held(now, here + at.JAMMED_NOW, runs),
-    )
-    free = Free(
+    contacts, carried = parts.contacts, parts.state.carried
+    now, here = contacts.now, i * at.IN_STEP
+    alone = Free(
         held(now, here + at.FREE_GAP, runs),
         held(now, here + at.FREE_SLIP, runs),
-        strayed_in_plane(parts.state.carried, i, runs),
-        own_compliance(parts.contacts.faces, parts.contacts.rows[i], runs),
+        strayed_in_plane(carried, i, runs),
+        own_compliance(contacts.faces, contacts.rows[i], runs),
         held(now, here + at.LET_GO, runs),
     )
+    free: Free = about_indentation(alone, held(now, here + at.GIVE, runs), held(now, here + at.BEYOND, runs))
+    normal, status = held(now, here + at.NORMAL_NOW, runs), held(now, here + at.STATUS_NOW, runs)
+    way = no_way(runs)
+    if contacts.codes[i] != at.COULOMB:
+        law, before = law_of(i, contacts, runs), carried_by(carried, i, runs)
+        way = way_of((normal, status), free, law, before, parts.timing.step)
+    tangential, jammed = held(now, here + at.TANGENTIAL_NOW, runs), held(now, here + at.JAMMED_NOW, runs)
+    touch = Touch(normal, tangential, status, jammed, way)
     moved = Moved(held(now, here + at.NEW_GAP, runs), held(now, here + at.NEW_SLIP, runs))
     keep_books(i, free, touch, moved, parts, n, runs)
 

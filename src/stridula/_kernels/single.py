@@ -3,8 +3,8 @@
 from .books.bookkeeping import credit, keep_books, keep_place
 from .books.leaving import beyond_ends
 from .books.recording import keep_probes
-from .contact.solves import carried_by, strayed_in_plane
-from .contact.yielding import comes_close, solve_and_keep
+from .contact.solves import carried_by, law_of, strayed_in_plane, way_apart
+from .contact.yielding import about_indentation, comes_close, solve_and_keep
 from .contacts.profiles import follow_profile
 from .lanes.compiled import inlined, pasted
 from .lanes.operations import Array, Number, Runs, anywhere, choose, held, hold
@@ -20,7 +20,7 @@ def solve_single(tried: Tried, contacts: Contacts, carried: Array, timing: Timin
     hold(contacts.now, at.GIVE, runs, runs.zero)
     hold(contacts.now, at.BEYOND, runs, runs.zero)
     if not anywhere(comes_close(0, tried.gap, contacts.constants, carried, runs) > 0.5):
-        return Touch(runs.zero, runs.zero, runs.zero, runs.zero)
+        return Touch(runs.zero, runs.zero, runs.zero, runs.zero, way_apart(law_of(0, contacts, runs)))
     free, before = free_of(tried, carried, runs), carried_by(carried, 0, runs)
     touch: Touch = solve_and_keep(0, free, before, contacts, carried, timing.step, runs)
     return touch
@@ -70,7 +70,9 @@ def keep_one(parts: Parts, n: int, tried: Tried, touch: Touch, runs: Runs) -> Nu
     normal, tangential = touch.normal, touch.tangential
     gap, slip = tried.gap + w.nn * normal - w.nt * tangential, tried.slip + w.tn * normal - w.tt * tangential
     place = tried.place + w.nt * normal - held(contacts.fixed, 2, runs) * tangential
-    keep_books(0, free_of(tried, carried, runs), touch, Moved(gap, slip), parts, n, runs)
+    give, beyond = held(contacts.now, at.GIVE, runs), held(contacts.now, at.BEYOND, runs)
+    free = about_indentation(free_of(tried, carried, runs), give, beyond)
+    keep_books(0, free, touch, Moved(gap, slip), parts, n, runs)
     if contacts.profiles.shape[1]:
         follow_profile(0, normal, slip, contacts, parts.state, runs)
     hold(contacts.now, at.NORMAL_NOW, runs, normal)

@@ -193,13 +193,13 @@ class Sliding:
             speed, pieces = abs(u) / h, law.curve
             bend = np.interp(speed, pieces.speed, pieces.bend) + max(speed - pieces.speed[-1], 0.0)
             steep = abs(law.linearised_at(speed).slope)
-            return max(0.5 / (abs(rate) / (bend * h) + self.pull * steep / h + 0.5), 1 / 64)
+            return max(0.5 / (abs(rate) / (bend * h) + self.pull * steep / h + 0.4), 1 / 64)
         if isinstance(law, st.LinearWeakening):
             scale, steep = law.static / law.slope * h, law.slope / h * (ratio > law.kinetic)
         else:
             scale, viscous = law.velocity * h, law.viscous / h if isinstance(law, st.Stribeck) else 0.0
             steep = (ratio - law.kinetic - viscous * abs(u)) / scale + viscous
-        return max(0.5 / (abs(rate) / (scale + abs(u)) + self.pull * steep + 0.5), 1 / 64)
+        return max(0.5 / (abs(rate) / (scale + abs(u)) + self.pull * steep + 0.4), 1 / 64)
 
 
 def _moments(a, b, first, middle, last):

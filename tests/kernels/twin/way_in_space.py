@@ -45,7 +45,7 @@ def sliding(law, last, past, slip, w, h, normal):
         if not isinstance(law, st.StaticKinetic):
             scale, viscous = law.velocity * h, law.viscous / h
             steep = (friction - law.kinetic - viscous * speed) / scale + viscous
-            part = max(0.5 / (rate / (scale + speed) + way @ pull @ way * steep + 0.5), 1 / 64)
+            part = min(max(0.5 / (rate / (scale + speed) + way @ pull @ way * steep + 0.4), 1 / 64), 1)
         part = min(max(1 / (1 / part + rate / speed), min(part, 1 / 16)), 1 - begin)
         ratios = np.zeros((2, 2))
         for stage in range(2):

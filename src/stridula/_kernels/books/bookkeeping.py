@@ -3,10 +3,10 @@
 from ..contact.exact import SLIDING, STICKING, closed_share, landed_share, stuck_share
 from ..contact.friction import set_valued
 from ..contact.pressing import stored_in
-from ..contact.solves import anchor_after, carried_by, law_of, next_on_way, resting
-from ..contact.yielding import about_indentation, path_of, yields_of
+from ..contact.solves import anchor_after, carried_by, law_of, resting
+from ..contact.yielding import path_of, yields_of
 from ..lanes.compiled import inlined
-from ..lanes.operations import Array, Number, Numbers, Pair, Runs, add, anywhere, choose, held, hold, magnitude, read
+from ..lanes.operations import Array, Number, Pair, Runs, add, anywhere, choose, held, hold, magnitude, read
 from ..layout import columns as at
 from ..layout.contact_values import Before, Free, Moved, Touch
 from ..layout.parts import Carried, Contacts, Parts
@@ -83,14 +83,6 @@ def driven_work(i: int, normal: Number, tangential: Number, motion: Array, n: in
 
 
 @inlined
-def next_of(i: int, touch: Touch, free: Free, before: Before, parts: Parts, runs: Runs) -> Numbers:
-    """Return the past part of the ratio of contact `i` for the next step, the state of its law, its share of stick."""
-    if parts.contacts.codes[i] == at.COULOMB:
-        return runs.zero, before.state, runs.zero
-    return next_on_way((touch.normal, touch.status), free, law_of(i, parts.contacts, runs), before, parts.timing.step)
-
-
-@inlined
 def keep_forces(
     i: int,
     touch: Touch,
@@ -102,8 +94,7 @@ def keep_forces(
 ) -> Number:
     """Carry status and normal force of contact `i` to the next step; return the loss to friction."""
     base, law = i * at.CARRIED, contacts.codes[i]
-    normal, tangential, status, _ = touch
-    slip = moved.slip
+    normal, tangential, status, slip = touch.normal, touch.tangential, touch.status, moved.slip
     add(contacts.sums, i * at.SUMS + at.NORMALS, runs, normal)
     hold(carried, base + at.STATUS, runs, resting(status))
     hold(carried, base + at.CLOSED_SHARE, runs, closed)
@@ -170,14 +161,12 @@ def stored_in_contacts(contacts: Contacts, carried: Array, count: int, runs: Run
 
 @inlined
 def keep_books(i: int, free: Free, touch: Touch, moved: Moved, parts: Parts, n: int, runs: Runs) -> None:
-    """Do the bookkeeping of contact `i` in step `n`, except for its place; `free` does not tell how it yields."""
+    """Do the bookkeeping of contact `i` in step `n`, except for its place; `free` tells how it yields."""
     contacts, state, base = parts.contacts, parts.state, i * at.CARRIED
     law, carried = contacts.codes[i], state.carried
     before, stuck, lost = carried_by(carried, i, runs), runs.zero, runs.zero
     store_in(i, moved.gap, contacts, state, runs)
     if not set_valued(law) or anywhere(touch.status + before.status > 0.5):
-        give = held(contacts.now, i * at.IN_STEP + at.GIVE, runs)
-        free = about_indentation(free, give, held(contacts.now, i * at.IN_STEP + at.BEYOND, runs))
         closed = share_states(i, touch, free, moved.gap, before, parts, runs)
         status = touch.status, before.status
         keep_anchor(carried, base + at.MATERIAL, base + at.ANCHOR, law, moved.slip, status, runs)
@@ -185,10 +174,11 @@ def keep_books(i: int, free: Free, touch: Touch, moved: Moved, parts: Parts, n: 
             driven = driven_work(i, touch.normal, touch.tangential, parts.imposed.motion, n, runs)
             add(state.energies, at.CONTACT_WORK, runs, -driven)
             add(state.energies, at.DRIVE_WORK, runs, driven)
-        past, friction_state, stuck = next_of(i, touch, free, before, parts, runs)
-        hold(carried, base + at.STUCK_SHARE, runs, stuck)
-        hold(carried, base + at.PAST_RATIO, runs, past)
-        hold(carried, base + at.FRICTION_STATE, runs, friction_state)
+        if law != at.COULOMB:
+            past, friction_state, stuck = touch.way
+            hold(carried, base + at.STUCK_SHARE, runs, stuck)
+            hold(carried, base + at.PAST_RATIO, runs, past)
+            hold(carried, base + at.FRICTION_STATE, runs, friction_state)
         lost = keep_forces(i, touch, moved, carried, contacts, closed, runs)
         keep_tangential(i, touch.tangential, carried, contacts.sums, runs)
         add(state.energies, at.FRICTION_LOSS, runs, lost)

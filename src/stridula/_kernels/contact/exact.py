@@ -6,14 +6,19 @@ from typing import Any
 from ..lanes.compiled import strict, strict_pasted
 from ..lanes.operations import Number, Pair, choose, magnitude
 from ..layout import columns as at
-from ..layout.contact_values import Before, Compliance, Free, Law, Touch
-from ..layout.laws import STATIC
+from ..layout.contact_values import Before, Compliance, Free, Law, Touch, Way
+from ..layout.laws import NEW_STATE, STATIC
 from .friction import joint_holds, joint_of, next_normal, set_valued, sliding_ratio, sticking_speed, under
 from .slipping import SEPARATED, SLIDING, STICKING, ratio_over_step, ratio_with_state
 
 # Most evaluations of the ratio for the normal force, those before it is sought by bisection, and the relative change of
 # that force that is round-off.
 TRIALS, PATIENCE, ROUND_OFF = 80, 25, 1e-15
+# Product of the distances of a step of the secant method from the last two trials, relative to the force, below which
+# the error that it leaves is round-off.
+ENOUGH = 1e-13
+# Under Coulomb's law there is nothing to keep of the way.
+NO_WAY = Way(0.0, 0.0, 0.0)
 
 
 @strict_pasted
@@ -25,7 +30,7 @@ def solve_contact(free: Free, law: Law, before: Before, step: Number) -> Touch:
     """
     gap, slip, strayed, w = free.gap, free.slip, free.strayed, free.w
     if gap >= 0.0:
-        return Touch(0.0, 0.0, float(SEPARATED), 0.0)
+        return Touch(0.0, 0.0, float(SEPARATED), 0.0, new_way(law))
     if set_valued(law.code) and w.tt == 0.0:
         return slide_as_prescribed(free, law, before, step)
     if law.code != at.COULOMB:
@@ -39,7 +44,7 @@ def solve_contact(free: Free, law: Law, before: Before, step: Number) -> Touch:
     ):
         turns, pressed, turned, slides = turn_round(gap, slip, last_slip, w, mu, mu)
         if turns:
-            return Touch(pressed, turned, float(SLIDING if slides else STICKING), 0.0)
+            return Touch(pressed, turned, float(SLIDING if slides else STICKING), 0.0, NO_WAY)
     return touch
 
 
@@ -65,6 +70,35 @@ def ratio_under(normal: Number, free: Free, law: Law, before: Before, step: Numb
     return ratio, past, state, STICKING if sticks else SLIDING, 0.0
 
 
+@strict_pasted
+def expected_ratio(before: Before) -> Number:
+    """Return the ratio of forces to be expected: that from which it went in a straight line to its past part."""
+    if before.normal <= 0.0:
+        return 0.0
+    last = before.tangential / before.normal
+    return 3.0 * before.past - 0.5 * last if before.status == SLIDING else last
+
+
+@strict
+def new_way(law: Law) -> Way:
+    """Return the way of bodies apart, with the internal state of a new contact."""
+    return Way(0.0, law.table[law.row, NEW_STATE], 0.0)
+
+
+@strict
+def way_under(normal: Number, free: Free, law: Law, before: Before, step: Number) -> Way:
+    """Return the way of the slip under a normal force."""
+    _, past, state, _, stuck = ratio_under(normal, free, law, before, step)
+    return Way(past, state, stuck)
+
+
+@strict_pasted
+def farther(way: Way, last: Way, share: Number) -> Way:
+    """Return a way on the straight line through two, a share of their distance beyond the first."""
+    past, state = way.past + share * (way.past - last.past), way.state + share * (way.state - last.state)
+    return Way(past, state, way.stuck)
+
+
 @strict
 def slide_on_its_way(free: Free, law: Law, before: Before, step: Number) -> Touch:
     """Return the contact under a law whose friction changes within the step (5c).
@@ -75,24 +109,24 @@ def slide_on_its_way(free: Free, law: Law, before: Before, step: Number) -> Touc
     w_nn, w_nt = w.nn, w.nt
     if set_valued(law.code) and before.status != SLIDING:
         pressed, needed = sticking_forces(gap, slip + strayed, w)
-        sticks = False
         if pressed > 0.0:
-            sticks = ratio_under(pressed, free, law, before, step)[3] == STICKING
-        if sticks:
-            sense = 1.0 if needed >= 0.0 else -1.0
-            jams = w_nn - sense * law.table[law.row, STATIC] * w_nt <= 0.0
-            return Touch(pressed, needed, float(STICKING), 1.0 if jams else 0.0)
-    ratio = before.tangential / before.normal if before.normal > 0.0 else 0.0
+            _, past, state, status, stuck = ratio_under(pressed, free, law, before, step)
+            if status == STICKING:
+                sense = 1.0 if needed >= 0.0 else -1.0
+                jams = w_nn - sense * law.table[law.row, STATIC] * w_nt <= 0.0
+                return Touch(pressed, needed, float(STICKING), 1.0 if jams else 0.0, Way(past, state, stuck))
+    ratio = expected_ratio(before)
     clear = w_nn - ratio * w_nt
     normal = -gap / (clear if clear > 0.0 else w_nn)
-    status, last, error_before = SLIDING, 0.0, 0.0
+    way = NO_WAY
+    status, last, error_before, ratio_before, way_before = SLIDING, 0.0, 0.0, ratio, way
     low, high, below, above, settled = 0.0, math.inf, ratio, ratio, False
     for trial in range(TRIALS):
-        ratio, _, _, status, _ = ratio_under(normal, free, law, before, step)
-        clear = w_nn - ratio * w_nt
+        ratio, past, state, status, stuck = ratio_under(normal, free, law, before, step)
+        way, clear = Way(past, state, stuck), w_nn - ratio * w_nt
         if clear <= 0.0:
             pressed, needed = sticking_forces(gap, slip + strayed, w)
-            return Touch(pressed, needed, float(STICKING), 1.0)
+            return Touch(pressed, needed, float(STICKING), 1.0, way_under(pressed, free, law, before, step))
         found = -gap / clear
         error = found - normal
         settled = abs(error) <= ROUND_OFF * found or w_nt == 0.0
@@ -108,16 +142,24 @@ def slide_on_its_way(free: Free, law: Law, before: Before, step: Number) -> Touc
             secant = normal - error * (normal - last) / (error - error_before)
             if 0.5 * found < secant < 2.0 * found:
                 new = secant
+                if abs(new - normal) * abs(new - last) <= ENOUGH * new * new:
+                    share = (new - normal) / (normal - last)
+                    ratio, way = ratio + share * (ratio - ratio_before), farther(way, way_before, share)
+                    normal, settled = new, True
+                    break
         if trial > PATIENCE and low > 0.0 and high < math.inf:
             new = 0.5 * (low + high)
-        last, error_before, normal = normal, error, new
+        last, error_before, ratio_before, way_before, normal = normal, error, ratio, way, new
         if normal == last:
             break
-    if not settled and low > 0.0 and high < math.inf and above != below:
-        # The ratio jumps at this normal force, where the contact stops or slides on: between both it closes the gap.
-        share = min(max((w_nn + gap / normal - below * w_nt) / (w_nt * (above - below)), 0.0), 1.0)
-        ratio = below + share * (above - below)
-    return Touch(normal, ratio * normal, float(status), 0.0)
+    if not settled:
+        if low > 0.0 and high < math.inf and above != below:
+            # The ratio jumps at this normal force, where the contact stops or slides on: between both it closes the
+            # gap.
+            share = min(max((w_nn + gap / normal - below * w_nt) / (w_nt * (above - below)), 0.0), 1.0)
+            ratio = below + share * (above - below)
+        way = way_under(normal, free, law, before, step)
+    return Touch(normal, ratio * normal, float(status), 0.0, way)
 
 
 @strict
@@ -135,9 +177,9 @@ def solve_coulomb(gap: Number, slip: Number, w: Compliance, mu: Number) -> Touch
     sense = 1.0 if tangential >= 0.0 else -1.0
     free = w.nn - sense * mu * w.nt
     if abs(tangential) <= mu * normal:
-        return Touch(normal, tangential, float(STICKING), 1.0 if free <= 0.0 else 0.0)
+        return Touch(normal, tangential, float(STICKING), 1.0 if free <= 0.0 else 0.0, NO_WAY)
     normal = -gap / free
-    return Touch(normal, sense * mu * normal, float(SLIDING), 0.0)
+    return Touch(normal, sense * mu * normal, float(SLIDING), 0.0, NO_WAY)
 
 
 @strict
@@ -184,12 +226,13 @@ def slide_as_prescribed(free: Free, law: Law, before: Before, step: Number) -> T
     normal = -free.gap / free.w.nn
     law = under(law, normal)
     if slip == 0.0 or slip + free.strayed == 0.0:
-        return Touch(normal, 0.0, float(STICKING), 0.0)
+        return Touch(normal, 0.0, float(STICKING), 0.0, Way(0.0, before.state, 1.0))
     ratio = sliding_ratio(law, abs(velocity_at(slip, last_slip, before.earlier_slip, step)))
     if before.status == SLIDING and last_slip * slip < 0.0:
         # Sliding on until it stops, then back (5d).
         ratio *= (slip + last_slip) / (slip - last_slip)
-    return Touch(normal, math.copysign(1.0, slip) * ratio * normal, float(SLIDING), 0.0)
+    tangential = math.copysign(1.0, slip) * ratio * normal
+    return Touch(normal, tangential, float(SLIDING), 0.0, Way(0.0, before.state, 0.0))
 
 
 @strict_pasted

@@ -8,7 +8,7 @@ import math
 from ..lanes.compiled import strict, strict_pasted
 from ..lanes.operations import Number, Numbers, Pair
 from ..layout import columns as at
-from ..layout.contact_values import Law
+from ..layout.contact_values import Law, Piece
 from ..layout.laws import (
     BRISTLE_DAMPING,
     BRISTLE_STIFFNESS,
@@ -39,6 +39,8 @@ from .pieces import piece_at
 
 # Normal force that stands for none [N]; share of the limit of friction from which it is reached but for rounding.
 LEAST_FORCE, FULL = 1e-200, 1.0 - 1e-9
+# No speed is on it.
+NO_PIECE = Piece(0.0, 0.0, 0)
 
 
 @strict
@@ -112,23 +114,38 @@ def static_of_curve(law: Law) -> Number:
 
 
 @strict
-def curve_at(law: Law, speed: Number) -> Numbers:
+def curve_at(law: Law, speed: Number) -> tuple[Number, Number, Number, Piece]:
     """Return the ratio of a curve at a speed, its slope, and the change of the speed over which it bends.
 
-    Under a normal force between those of two sections it lies on the straight line between them.
+    Under a normal force between those of two sections it lies on the straight line between them. Else the last result
+    is the piece on which it has this ratio, which `on_piece` evaluates.
     """
     if law.table[law.row, SECTIONS] == 1.0:
         return curve_of_section(law, 0, speed)
     section, share, _ = section_of(law)
-    ratio, slope, bend = curve_of_section(law, section, speed)
+    ratio, slope, bend, piece = curve_of_section(law, section, speed)
     if share == 0.0:
-        return ratio, slope, bend
-    other, steeper, sharper = curve_of_section(law, section + 1, speed)
-    return (1.0 - share) * ratio + share * other, (1.0 - share) * slope + share * steeper, min(bend, sharper)
+        return ratio, slope, bend, piece
+    other, steeper, sharper, _ = curve_of_section(law, section + 1, speed)
+    ratio, slope = (1.0 - share) * ratio + share * other, (1.0 - share) * slope + share * steeper
+    return ratio, slope, min(bend, sharper), NO_PIECE
+
+
+@strict_pasted
+def on_piece(piece: Piece, law: Law, speed: Number) -> Number:
+    """Return the ratio of a curve at a speed on a piece of it."""
+    table, row = law.table, law.row
+    order = int(table[row, ORDER])
+    place = (speed - piece.begin) * (2.0 / (piece.end - piece.begin)) - 1.0
+    # Two powers at a time, which wait for each other half as long.
+    square, first, ratio = place * place, piece.first, 0.0
+    for k in range(order - 2, -1, -2):
+        ratio = ratio * square + (table[row, first + k + 1] * place + table[row, first + k])
+    return ratio if order % 2 == 0 else ratio * place + table[row, first]
 
 
 @strict
-def curve_of_section(law: Law, section: int, speed: Number) -> Numbers:
+def curve_of_section(law: Law, section: int, speed: Number) -> tuple[Number, Number, Number, Piece]:
     """Do `curve_at` for a section."""
     table, row = law.table, law.row
     pieces, order = int(table[row, PIECES]), int(table[row, ORDER])
@@ -147,8 +164,8 @@ def curve_of_section(law: Law, section: int, speed: Number) -> Numbers:
     share = 0.5 * (place + 1.0)
     bend = (1.0 - share) * table[row, bends] + share * table[row, bends + 1]
     if farther > 0.0:
-        return ratio + table[row, END_SLOPE] * farther, table[row, END_SLOPE], bend + farther
-    return ratio, slope * per_speed, bend
+        return ratio + table[row, END_SLOPE] * farther, table[row, END_SLOPE], bend + farther, NO_PIECE
+    return ratio, slope * per_speed, bend, Piece(begin, end, first)
 
 
 @strict_pasted
@@ -316,7 +333,7 @@ def ratio_after(law: Law, state: Number, velocity: Number, time: Number) -> Pair
         ]
     if law.code == at.IN_SERIES:
         stiffness, damping = joint_of(law)
-        firm, (most, slope, _) = stiffness * time + damping, curve_at(law, speed)
+        firm, (most, slope, _, _) = stiffness * time + damping, curve_at(law, speed)
         ratio = stiffness * state + firm * velocity
         if abs(ratio) <= most:
             return ratio, firm

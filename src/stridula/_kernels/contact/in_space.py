@@ -25,7 +25,7 @@ from ..layout.contact_values import (
 from ..layout.laws import STATIC
 from ..layout.parts import Contacts
 from ..layout.rows import COMPLIANCE, DISPLACEMENT
-from .exact import SLIDING
+from .exact import NO_WAY, SLIDING
 from .lanewise import lanewise
 from .law_in_space import slide_on_its_way
 from .solves import solve, strayed
@@ -262,14 +262,14 @@ def searched(
     carried_on, slips, w = carried_on_by(before, free.let_go, pulled), free.slips, free.w
     turn, low, high = 0.0, -math.inf, math.inf
     turn_before, before_off = math.nan, math.nan
-    way, touch = pulled, Touch(0.0, 0.0, 0.0, 0.0)
+    way, touch = pulled, Touch(0.0, 0.0, 0.0, 0.0, NO_WAY)
     for trial in range(TRIALS):
         way = plus(scaled(math.cos(turn), pulled), math.sin(turn), left_of(pulled))
         touch = solve_along(way, free, law, before, step)
         normal, tangential = touch.normal, touch.tangential
         if trial == 0 and may_hold and abs(touch.status - SLIDING) > 0.5:
             break
-        # The direction is that of the velocity, see `contact.velocity_at`.
+        # The direction is that of the velocity, see `exact.velocity_at`.
         moved = plus(scaled(9.0, slip_under(way, normal, tangential, slips, w)), 1.0, carried_on)
         off = across(moved, way)
         size = abs(slips.a) + abs(slips.b) + (abs(w.an) + abs(w.bn)) * normal + (w.aa + w.bb) * abs(tangential)

@@ -3,12 +3,12 @@
 import math
 from typing import Any
 
-from ..lanes.compiled import strict
+from ..lanes.compiled import strict, strict_pasted
 from ..lanes.operations import Pair
 from ..layout import columns as at
 from ..layout.contact_values import BeforeInSpace, ComplianceInSpace, FreeInSpace, Law, Tangents, TouchInSpace
 from ..layout.laws import NEW_STATE, STATIC
-from .exact import PATIENCE, ROUND_OFF, SLIDING, STICKING, TRIALS, velocity_at
+from .exact import ENOUGH, PATIENCE, ROUND_OFF, SLIDING, STICKING, TRIALS, velocity_at
 from .friction import joint_holds, joint_of, next_normal, set_valued, sliding_ratio, sticking_speed, under
 from .lanewise import lanewise
 from .slipping_in_space import ratio_over_step, ratio_with_state, sticking_forces
@@ -25,7 +25,7 @@ def is_prescribed(law: Law, w: ComplianceInSpace) -> bool:
 def ratio_under(normal: float, free: FreeInSpace, law: Law, before: BeforeInSpace, step: float) -> tuple[Any, ...]:
     """Return ratios over a step under a normal force, past parts, new states, status and share of stick.
 
-    As `contact.ratio_under`.
+    As `exact.ratio_under`.
     """
     slips, w, law = free.slips, free.w, under(law, normal)
     if set_valued(law.code):
@@ -47,7 +47,7 @@ def ratio_under(normal: float, free: FreeInSpace, law: Law, before: BeforeInSpac
 
 @strict
 def slide_as_prescribed(free: FreeInSpace, law: Law, before: BeforeInSpace, step: float) -> TouchInSpace:
-    """Return the contact of bodies that no force moves along the tangents: as `contact.slide_as_prescribed`."""
+    """Return the contact of bodies that no force moves along the tangents: as `exact.slide_as_prescribed`."""
     gap, slips, strays, w = free.gap, free.slips, free.strays, free.w
     was, last, earlier = before.status, before.slip, before.earlier_slip
     normal, size = -gap / w.nn, size_of(slips)
@@ -72,9 +72,18 @@ def slide_as_prescribed(free: FreeInSpace, law: Law, before: BeforeInSpace, step
     return TouchInSpace(normal, scaled(pulled, way), float(SLIDING), 0.0)
 
 
+@strict_pasted
+def expected_ratio(before: BeforeInSpace) -> Tangents:
+    """Return the ratios of forces to be expected: as `exact.expected_ratio`."""
+    if before.normal <= 0.0:
+        return NOTHING
+    last = over(before.tangential, before.normal)
+    return plus(scaled(3.0, before.past), -0.5, last) if before.status == SLIDING else last
+
+
 @strict
 def slide_on_its_way(free: FreeInSpace, law: Law, before: BeforeInSpace, step: float) -> TouchInSpace:
-    """Return the contact under a law whose friction changes within the step: as `contact.slide_on_its_way`."""
+    """Return the contact under a law whose friction changes within the step: as `exact.slide_on_its_way`."""
     gap, slips, strays, w = free.gap, free.slips, free.strays, free.w
     if is_prescribed(law, w):
         return slide_as_prescribed(free, law, before, step)
@@ -86,10 +95,10 @@ def slide_on_its_way(free: FreeInSpace, law: Law, before: BeforeInSpace, step: f
                 most, pulled = law.table[law.row, STATIC], size_of(held)
                 lifted = most * along(held, to_normal(w)) / pulled if pulled > 0.0 else 0.0
                 return TouchInSpace(pressed, held, float(STICKING), 1.0 if w.nn <= lifted else 0.0)
-    ratio = scaled(1.0 / before.normal if before.normal > 0.0 else 0.0, before.tangential)
+    ratio = expected_ratio(before)
     clear = w.nn - ratio.a * w.na - ratio.b * w.nb
     normal = -gap / (clear if clear > 0.0 else w.nn)
-    status, last, error_before = SLIDING, 0.0, 0.0
+    status, last, error_before, ratio_before = SLIDING, 0.0, 0.0, ratio
     low, high, below, above, settled = 0.0, math.inf, ratio, ratio, False
     for trial in range(TRIALS):
         ratio, _, _, status, _ = ratio_under(normal, free, law, before, step)
@@ -112,9 +121,13 @@ def slide_on_its_way(free: FreeInSpace, law: Law, before: BeforeInSpace, step: f
             secant = normal - error * (normal - last) / (error - error_before)
             if 0.5 * found < secant < 2.0 * found:
                 new = secant
+                if abs(new - normal) * abs(new - last) <= ENOUGH * new * new:
+                    ratio = plus(ratio, (new - normal) / (normal - last), plus(ratio, -1.0, ratio_before))
+                    normal, settled = new, True
+                    break
         if trial > PATIENCE and low > 0.0 and high < math.inf:
             new = 0.5 * (low + high)
-        last, error_before, normal = normal, error, new
+        last, error_before, ratio_before, normal = normal, error, ratio, new
         if normal == last:
             break
     if not settled and low > 0.0 and high < math.inf:

@@ -12,7 +12,7 @@ import math
 from ..lanes.compiled import strict, strict_pasted
 from ..lanes.operations import Number, Numbers, Pair
 from ..layout import columns as at
-from ..layout.contact_values import Before, Compliance, Drive, Free, Law
+from ..layout.contact_values import Before, Compliance, Drive, Free, Law, Piece
 from ..layout.laws import (
     BRISTLE_STIFFNESS,
     FLOOR,
@@ -26,6 +26,7 @@ from ..layout.laws import (
 )
 from .friction import (
     LEAST_FORCE,
+    NO_PIECE,
     changed_by_normal,
     curve_at,
     deflected,
@@ -33,6 +34,7 @@ from .friction import (
     holding_under,
     next_normal,
     next_state,
+    on_piece,
     ratio_after,
     sliding_ratio,
     speed_scale,
@@ -47,6 +49,8 @@ SEPARATED, STICKING, SLIDING, STOPPED = 0, 1, 2, 3
 MOST_PARTS, REVERSALS = 64, 3
 # Bend of the law in a part; phase of bristles in a part; ageing in a part.
 PART, PHASE, AGEING = 0.5, 0.25, 1.0
+# Bend that is added to that of a part: a way that bends by less than a tenth has one part.
+LEAST_BEND = 0.4
 # Most deflections of a joint that divide the slip of a step; where it passes more, the joint hardly matters.
 REACHES = 8.0
 # First stage of the implicit rule, as a share of a part.
@@ -72,25 +76,45 @@ def ratio_of(slip: Number, sense: Number, law: Law, step: Number) -> Number:
 
 
 @strict_pasted
-def part_of(slip: Number, rate: Number, ratio: Number, pull: Number, law: Law, step: Number) -> Number:
-    """Return the size of the next part of the way, within which the ratio of a set-valued law hardly bends.
+def ratio_near(piece: Piece, slip: Number, sense: Number, law: Law, per_step: Number) -> Number:
+    """Do `ratio_of`, for curves sooner if the slip speed lies on a piece."""
+    speed = max(sense * slip, 0.0) * per_step
+    if piece.begin <= speed < piece.end:
+        return sense * on_piece(piece, law, speed)
+    return sense * sliding_ratio(law, speed)
 
-    It depends continuously on its arguments, so that the solution does on those of the step.
+
+@strict_pasted
+def ratio_and_bend(
+    slip: Number, sense: Number, pull: Number, law: Law, step: Number
+) -> tuple[Number, Number, Number, Piece]:
+    """Return the signed ratio of a set-valued law at a slip, how it bends with the slip, and its change under a pull.
+
+    The last result is the piece of a curve on which it is.
     """
-    table, row = law.table, law.row
-    if law.code == at.STATIC_KINETIC:
-        return 1.0
+    table, row, size = law.table, law.row, max(sense * slip, 0.0)
     if law.code == at.CURVE:
-        _, slope, bend = curve_at(law, abs(slip) / step)
-        return max(PART / (abs(rate) / (bend * step) + pull * abs(slope) / step + PART), 1.0 / MOST_PARTS)
-    scale, size = speed_scale(law, 0.0) * step, abs(slip)
+        ratio, slope, bend, piece = curve_at(law, size / step)
+        return sense * ratio, 1.0 / (bend * step), pull * abs(slope) / step, piece
+    ratio = sliding_ratio(law, size / step)
+    if law.code == at.STATIC_KINETIC:
+        return sense * ratio, 0.0, 0.0, NO_PIECE
+    scale = speed_scale(law, 0.0) * step
     if law.code == at.LINEAR_WEAKENING:
         steep = table[row, SLOPE] / step if ratio > table[row, FLOOR] else 0.0
     else:
         viscous = table[row, VISCOUS] / step
         steep = (ratio - table[row, KINETIC] - viscous * size) / scale + viscous
-    part = PART / (abs(rate) / (scale + size) + pull * steep + PART)
-    return max(part, 1.0 / MOST_PARTS)
+    return sense * ratio, 1.0 / (scale + size), pull * steep, NO_PIECE
+
+
+@strict_pasted
+def part_of(rate: Number, per_slip: Number, steep: Number) -> Number:
+    """Return the size of the next part of the way, within which the ratio of a set-valued law hardly bends.
+
+    It depends continuously on its arguments, so that the solution does on those of the step.
+    """
+    return min(max(PART / (abs(rate) * per_slip + steep + LEAST_BEND), 1.0 / MOST_PARTS), 1.0)
 
 
 @strict
@@ -108,19 +132,18 @@ def slide_through(
     stuck : float
         Share of the step for which the contact is at rest at its end.
     """
-    later, past, held = 0.0, 0.0, holding_ratio(law, True)
+    later, past, per_step = 0.0, 0.0, 1.0 / step
     for _ in range(REVERSALS):
         stops = False
         while begin < 1.0:
-            r1 = ratio_of(slip, sense, law, step)
+            r1, per_slip, steep, piece = ratio_and_bend(slip, sense, pull, law, step)
             rate = drive.begin + drive.grows * begin - pull * r1
-            size = part_of(slip, rate, abs(r1), pull, law, step)
-            end = min(begin + size, 1.0)
+            end = min(begin + part_of(rate, per_slip, steep), 1.0)
             size = end - begin
             middle = drive.begin + drive.grows * (begin + 0.5 * size)
-            r2 = ratio_of(slip + 0.5 * size * rate, sense, law, step)
-            r3 = ratio_of(slip + 0.5 * size * (middle - pull * r2), sense, law, step)
-            r4 = ratio_of(slip + size * (middle - pull * r3), sense, law, step)
+            r2 = ratio_near(piece, slip + 0.5 * size * rate, sense, law, per_step)
+            r3 = ratio_near(piece, slip + 0.5 * size * (middle - pull * r2), sense, law, per_step)
+            r4 = ratio_near(piece, slip + size * (middle - pull * r3), sense, law, per_step)
             new = slip + size * (middle - pull * (r1 + 2.0 * (r2 + r3) + r4) / 6.0)
             if sense * new < 0.0:
                 # It stops on the parabola with this beginning, slope and end.
@@ -137,6 +160,7 @@ def slide_through(
             later, past, begin, slip = later + more, past + less, end, new
         if not stops:
             return later, past, 0.0
+        held = holding_ratio(law, True)
         first, last = drive.begin + drive.grows * begin, drive.begin + drive.grows
         if max(abs(first), abs(last)) <= held * pull and pull > 0.0:
             more, less = moments(begin, 1.0, first / pull, 0.5 * (first + last) / pull, last / pull)
@@ -192,13 +216,13 @@ def ratio_over_step(
     """Return the ratio of forces over a step under a set-valued law, its past part, status and share of stick.
 
     `normal` is the normal force, `gap` and `slip` those without the forces of this contact; other arguments as in
-    `contact.solve_contact`. A contact that sticks does so throughout the step. Whether it does, and when it breaks,
+    `exact.solve_contact`. A contact that sticks does so throughout the step. Whether it does, and when it breaks,
     follows from the forces with which it would stick; what it is driven by after that from its normal force.
     """
     gap, slip, strayed, w = free.gap, free.slip, free.strayed, free.w
     was, last, past = before.status, before.slip, before.past
     pull, moved = w.tt * normal, slip + w.tn * normal
-    held = holding_ratio(law, was == STICKING and free.let_go <= 0.5)
+    held = 0.0 if was == SLIDING else holding_ratio(law, was == STICKING and free.let_go <= 0.5)
     driven = (moved + strayed) / pull if pull > 0.0 else math.copysign(math.inf, moved + strayed)
     needed = driven if was == SLIDING else ratio_of_stick(gap, slip + strayed, w, driven)
     if was == STICKING and last == 0.0:

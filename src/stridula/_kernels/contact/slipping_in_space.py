@@ -52,6 +52,7 @@ from .slipping import (
     part_of,
     parts_of_joint,
     parts_with_state,
+    ratio_and_bend,
 )
 from .slipping import slide_through as slide_on_line
 from .tangents import (
@@ -254,10 +255,11 @@ def part_in_space(slip: Tangents, drive: Tangents, pull: Matrix, law: Law, step:
     speed = size_of(slip)
     if speed == 0.0:
         return 1.0 / MOST_TURNS
-    friction, way = sliding_ratio(law, speed / step), over(slip, speed)
+    way = over(slip, speed)
     dragged = times(pull, way)
+    friction, per_slip, steep, _ = ratio_and_bend(speed, 1.0, along(way, dragged), law, step)
     rate = size_of(plus(drive, -friction, dragged))
-    part = part_of(speed, rate, friction, along(way, dragged), law, step)
+    part = part_of(rate, per_slip, steep)
     return max(1.0 / (1.0 / part + rate / speed), min(part, 1.0 / MOST_TURNS))
 
 

@@ -1,43 +1,53 @@
 """Step 5 for a contact of one run, or of several side by side, under any law of friction."""
 
 from ..lanes.compiled import inlined, pasted, strict_pasted
-from ..lanes.operations import Array, Number, Numbers, Pair, Runs, anywhere, choose, everywhere, held, magnitude
+from ..lanes.operations import Array, Number, Pair, Runs, anywhere, choose, everywhere, held, magnitude
 from ..layout import columns as at
-from ..layout.contact_values import Before, Compliance, Free, Law, Touch
-from ..layout.laws import NEW_STATE
+from ..layout.contact_values import Before, Compliance, Free, Law, Touch, Way
 from ..layout.parts import Contacts
-from .exact import SLIDING, STICKING, ratio_under, solve_contact, turn_round
+from .exact import NO_WAY, SLIDING, STICKING, new_way, solve_contact, turn_round, way_under
 from .friction import set_valued
 from .lanewise import lanewise
 from .slipping import STOPPED
 
 
-@lanewise(Touch(0.0, 0.0, 0.0, 0.0))
+@lanewise(Touch(0.0, 0.0, 0.0, 0.0, NO_WAY))
 def solve(free: Free, law: Law, before: Before, step: Number) -> Touch:
     """Return forces, status and whether it jams, of a contact under any law."""
     return solve_contact(free, law, before, step)
 
 
-@lanewise((0.0, 0.0, 0.0))
-def next_on_way(touch: Pair, free: Free, law: Law, before: Before, step: Number) -> Numbers:
-    """Return the past parts of the ratios for the next step, the internal states, and shares of stick of this step.
+@lanewise(NO_WAY)
+def way_of(touch: Pair, free: Free, law: Law, before: Before, step: Number) -> Way:
+    """Return the way of a contact, one of several, with these normal force and status.
 
-    `touch` are normal force and status. Where bodies are apart, states are those of new contacts.
+    Where bodies are apart, states are those of new contacts.
     """
     normal, status = touch
     if status < 0.5:
-        return 0.0, law.table[law.row, NEW_STATE], 0.0
-    if law.code == at.COULOMB or (set_valued(law.code) and free.w.tt == 0.0):
-        return 0.0, before.state, 1.0 if status == STICKING else 0.0
-    _, past, state, _, stuck = ratio_under(normal, free, law, before, step)
-    return past, state, stuck
+        return new_way(law)
+    if set_valued(law.code) and free.w.tt == 0.0:
+        return Way(0.0, before.state, 1.0 if status == STICKING else 0.0)
+    return way_under(normal, free, law, before, step)
+
+
+@lanewise(NO_WAY)
+def way_apart(law: Law) -> Way:
+    """Do `new_way`, in each run."""
+    return new_way(law)
+
+
+@inlined
+def no_way(runs: Runs) -> Way:
+    """Return the way of contacts that none is asked of."""
+    return Way(runs.zero, runs.zero, runs.zero)
 
 
 @strict_pasted
 def coulomb(gap: Number, slip: Number, w: Compliance, mu: Number) -> Touch:
     """Do `solve` under Coulomb's law without branches (5a to 5c); `slip` is the distance to the anchor of sticking.
 
-    The result equals that of `contact.solve_coulomb`, as a test checks.
+    The result equals that of `exact.solve_coulomb`, as a test checks.
     """
     w_nn, w_nt, w_tn, w_tt = w
     share = 1.0 / (w_nn * w_tt - w_nt * w_tn)
@@ -50,11 +60,13 @@ def coulomb(gap: Number, slip: Number, w: Compliance, mu: Number) -> Touch:
     tangential = choose(slides, directed * normal, held)
     jammed = choose(free > 0.0, 0.0, choose(slides, 0.0, 1.0))
     apart = gap >= 0.0
+    nothing = choose(apart, 0.0, 0.0)
     return Touch(
         choose(apart, 0.0, normal),
         choose(apart, 0.0, tangential),
         choose(apart, 0.0, choose(slides, 2.0, 1.0)),
         choose(apart, 0.0, jammed),
+        Way(nothing, nothing, nothing),
     )
 
 
@@ -71,6 +83,7 @@ def turned_round(gap: Number, slip: Number, last_slip: Number, w: Compliance, mu
         choose(turns, turned, touch.tangential),
         choose(turns, choose(slides, 2.0, 1.0), touch.status),
         touch.jammed,
+        touch.way,
     )
 
 

@@ -15,6 +15,7 @@ from ..layout.contact_values import (
     Tangents,
     Touch,
     TouchInSpace,
+    Way,
     Yielding,
 )
 from ..layout.parts import Contacts
@@ -97,7 +98,7 @@ def solve_rigid(free: Any, law: Law, before: Any, step: Number, zero: Number) ->
 def without_forces(free: Any, zero: Number) -> Any:
     """Return a contact of the plane or of space without forces."""
     if len(free) == IN_PLANE:
-        return Touch(zero, zero, zero, zero)
+        return Touch(zero, zero, zero, zero, Way(zero, zero, zero))
     return TouchInSpace(zero, Tangents(zero, zero), zero, zero)
 
 

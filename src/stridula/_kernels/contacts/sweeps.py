@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from ..contact.exact import SLIDING, STICKING
 from ..contact.in_space import carried_in_space, free_of_own
-from ..contact.solves import carried_by, strayed_in_plane
+from ..contact.solves import carried_by, no_way, strayed_in_plane
 from ..contact.tangents import choose_along, held_along
 from ..contact.yielding import comes_close, solve_and_keep
 from ..lanes.compiled import entry, inlined, pasted
@@ -150,7 +150,7 @@ def put_touch_in_space(
     """Do `put_touch` for a contact in space."""
     now, b = contacts.now, i * at.IN_STEP + at.TANGENTIAL_NOW_B
     was = held(now, b, runs)
-    along_a = Touch(touch.normal, touch.tangential.a, touch.status, touch.jammed)
+    along_a = Touch(touch.normal, touch.tangential.a, touch.status, touch.jammed, no_way(runs))
     more, pulled, turned = put_touch(i, along_a, done, contacts, runs)
     hold(now, b, runs, choose(done < 0.5, touch.tangential.b, was))
     return more, Tangents(pulled, held(now, b, runs) - was), turned

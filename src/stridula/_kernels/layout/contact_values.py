@@ -68,6 +68,14 @@ class Law(NamedTuple):
     normal: Number
 
 
+class Piece(NamedTuple):
+    """A piece of a curve of friction: the slip speeds at its ends, and the column of its first coefficient."""
+
+    begin: Number
+    end: Number
+    first: int
+
+
 class Profile(NamedTuple):
     """The profile of the track of a contact: the table of those of all contacts, and its row; see `profiles`."""
 
@@ -216,13 +224,35 @@ class DriveInSpace(NamedTuple):
     grows: Tangents
 
 
+class Way(NamedTuple):
+    """The slip of a contact on its way through a step, see `slipping`.
+
+    Attributes
+    ----------
+    past : number
+        Past part of the ratio of forces for the next step.
+    state : number
+        Internal state of the law.
+    stuck : number
+        Share of the step in which it sticks.
+    """
+
+    past: Number
+    state: Number
+    stuck: Number
+
+
 class Touch(NamedTuple):
-    """Forces of a contact in a step [N], its status, and whether it jams."""
+    """Forces of a contact in a step [N], its status, whether it jams, and the way of its slip.
+
+    Only the solution of a single contact has its way.
+    """
 
     normal: Number
     tangential: Number
     status: Number
     jammed: Number
+    way: Way
 
 
 class TouchInSpace(NamedTuple):
