@@ -3,7 +3,8 @@
 Two linings on a disc that turns, touching at nodes with and without a stiffness: some forty modes and a thousand
 residual shapes. The forces of both sides agree with the load. The shipped brake then has points of another friction
 each: a point whose matrices are those of the last, with the residual shapes that nothing sees eliminated, against a
-point with all of them, and the time of 10 000 points on two processors that follows from it. The exponents agree.
+point with all of them, and the time of 10 000 points on two processors that follows from it. The exponents agree. Last
+come the derivatives of its growing modes by all parameters, in systems solved again.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import time
 from collections.abc import Iterator
 
 import numpy as np
+import xarray as xr
 
 import stridula as st
 from ratios import REPEATS, WARM_UP, Ratio, must_agree, over, seconds, show, sized
@@ -33,6 +35,8 @@ SECOND, BAR = 1.0, 5.0
 # Values of friction of the points of the shipped brake, and the time of 10 000 points over ten minutes.
 FRICTIONS = sized(np.linspace(0.3, 0.5, 8), np.array([0.3, 0.5])).tolist()
 POINTS, PROCESSORS, MINUTES = 10_000, 2, 600.0
+# Parameters of the derivatives; None for all from which its modes follow.
+PARAMETERS = sized(None, ("friction.coefficient",))
 
 
 def rows() -> Iterator[Ratio]:
@@ -57,6 +61,7 @@ def rows() -> Iterator[Ratio]:
         yield Ratio(f"{size}, {words}", taken[WARM_UP:], most=BAR)
 
     yield from many_points()
+    yield from derivatives()
 
 
 def many_points() -> Iterator[Ratio]:
@@ -82,6 +87,33 @@ def many_points() -> Iterator[Ratio]:
     yield Ratio(f"{words}: all shapes at each over what changes", over(times, kept_times))
     each = POINTS / len(FRICTIONS) / PROCESSORS / MINUTES
     yield Ratio(f"{words}: {POINTS} points on two processors over 10 min", [each * one for one in kept_times])
+
+
+def derivatives() -> Iterator[Ratio]:
+    """Yield the time of the derivatives of the growing modes of the shipped brake over that of a system solved again.
+
+    The derivative by the friction agrees with the difference of two systems solved again.
+    """
+    friction, change = 0.45, 1e-4
+
+    def solved(value: float = friction) -> xr.Dataset:
+        return st.sliding_stability(st.load_scenario("brake", {"friction": value}).system)
+
+    def all_of_them() -> xr.Dataset:
+        return st.mode_sensitivity("brake", PARAMETERS)
+
+    with one_thread_each():
+        found_times, times = seconds(all_of_them, solved)
+        found = all_of_them()
+        fastest = found.isel(mode=int(np.argmax(found.growth_rate.values)))
+        more, less = (solved(friction + side * change).sel(mode=fastest.mode) for side in (1.0, -1.0))
+    by_friction = float(fastest.d_growth_rate.sel(parameter="friction.coefficient"))
+    difference = float(more.growth_rate - less.growth_rate) / (2.0 * change)
+    must_agree("derivative of the growth by the friction", by_friction, difference, 1e-5)
+    count = found.sizes["parameter"]
+    yield Ratio(
+        f"the shipped brake, derivatives by {count} parameters over a system solved again", over(found_times, times)
+    )
 
 
 def growth_of_all_shapes(system: st.System) -> float:

@@ -37,6 +37,7 @@ ASKED = {
     "sensitivity": lambda **shown: st.sensitivity(
         "squeal", {"friction": (0.5, 1.0)}, "regime", samples=4, resamples=1, **SHORT, **shown
     ),
+    "mode_sensitivity": lambda **shown: st.mode_sensitivity("squeal", ["friction", "slider.damping.rise"], **shown),
     "calibrate": lambda **shown: st.calibrate(
         spread, {"x": (0.0, 9.0)}, {"miss of it": (0.0, 1e-9)}, population=5, generations=4, **shown
     ),

@@ -11,6 +11,9 @@ import xarray as xr
 from unit.scenario_texts import chain, problems
 
 import stridula as st
+from stridula.scenarios import outline
+from stridula.scenarios.keys import find
+from stridula.studies.values_by_key import si_tables
 
 SHAKEN = """
 [bodies.block]
@@ -79,6 +82,17 @@ def test_keys_reach_bodies_and_contacts():
     assert other.contact.friction == st.Coulomb(0.3)
     with pytest.raises(st.ScenarioError, match="got 'cutoff'"):
         st.load_scenario("belt", {"cutoff": 1e3})
+
+
+@pytest.mark.parametrize("case", ["belt", "brake", "violin"])
+def test_the_full_path_of_a_number_is_its_key(case):
+    tables = si_tables(st.load_scenario(case).system, {})
+    given = [path for path, _ in outline.paths(tables) if isinstance(outline.look_up(tables, path), float)]
+    # Names of points that have a dot cannot be parts of a key.
+    keys = {".".join(map(str, path)): path for path in given if not any("." in str(part) for part in path)}
+    assert sum(any(isinstance(part, int) for part in path) for path in keys.values()) > 3
+    for key, path in keys.items():
+        assert find(key, tables) == path
 
 
 def test_the_belt_sticks_and_slips_as_the_closed_form_says():

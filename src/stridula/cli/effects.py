@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -26,7 +27,8 @@ def print_effects(
     """Print what each parameter does to the mode that grows fastest, and optionally draw or write all modes."""
     check_outputs(out, plot)
     check_record(out)
-    found = mode_sensitivity(name, None if ALL in keys else list(keys), overrides=overrides, **options)
+    asked, shown = None if ALL in keys else list(keys), sys.stderr.isatty()
+    found = mode_sensitivity(name, asked, overrides=overrides, progress=shown, **options)
     console = wide_console()
     console.print(_table(found))
     for words in filter(None, str(found.attrs["left_out"]).split("; ")):

@@ -52,20 +52,34 @@ class Pencil(NamedTuple):
     state: Array
 
 
-def pencil_of(motion: Vibration, blend: Array | None = None) -> Pencil:
+def pencil_of(motion: Vibration, turn: Array | None = None) -> Pencil:
     """Return small motions as a pencil, on other coordinates if a matrix from these to those of the motion is given."""
-    still = np.eye(len(motion.mass)) - motion.free @ motion.free.T
-    turn = np.eye(len(motion.mass)) if blend is None else blend
-    return Pencil(
-        mass=turn.T @ (motion.mass[:, None] * turn),
-        stiffness=turn.T @ motion.stiffness @ still @ turn,
-        damping=turn.T @ motion.damping @ turn,
-        held=motion.held @ turn,
-        pushes=motion.pushes @ turn,
-        by_state=turn.T @ motion.by_state,
-        from_velocity=motion.from_velocity @ turn,
-        from_displacement=motion.from_displacement @ still @ turn,
+    own = Pencil(
+        mass=np.diag(motion.mass),
+        stiffness=motion.stiffness - (motion.stiffness @ motion.free) @ motion.free.T,
+        damping=motion.damping,
+        held=motion.held,
+        pushes=motion.pushes,
+        by_state=motion.by_state,
+        from_velocity=motion.from_velocity,
+        from_displacement=motion.from_displacement - (motion.from_displacement @ motion.free) @ motion.free.T,
         state=motion.state,
+    )
+    return own if turn is None else turned_by(own, turn)
+
+
+def turned_by(pencil: Pencil, turn: Array) -> Pencil:
+    """Return a pencil on other coordinates, by the matrix from these to its own."""
+    return Pencil(
+        mass=turn.T @ pencil.mass @ turn,
+        stiffness=turn.T @ pencil.stiffness @ turn,
+        damping=turn.T @ pencil.damping @ turn,
+        held=pencil.held @ turn,
+        pushes=pencil.pushes @ turn,
+        by_state=turn.T @ pencil.by_state,
+        from_velocity=pencil.from_velocity @ turn,
+        from_displacement=pencil.from_displacement @ turn,
+        state=pencil.state,
     )
 
 
@@ -94,17 +108,19 @@ def displacement_rows(structure: Structure, point: BodyPoint) -> Array:
     return Coordinates(structure.system).trace(point)
 
 
-def turned_onto(structure: Structure, other: Structure) -> Array:
+def turned_onto(structure: Structure, other: Structure) -> Array | None:
     """Return the matrix from the coordinates of a system to those of a slightly different one, shape (modes, modes).
+
+    None if all points move alike in both.
 
     Modes have an arbitrary sign, modes of equal frequency and residual shapes any orientation among each other: those
     of the other system are combined so that points move as nearly as possible as in the first (orthogonal Procrustes
     problem, Schönemann 1966).
     """
-    turn = np.eye(structure.mode_count)
     here, there = rows_of(structure), rows_of(other)
     if np.array_equal(here, there):
-        return turn
+        return None
+    turn = np.eye(structure.mode_count)
     for group in _alike(structure):
         moved = there[:, group].T @ here[:, group]
         left, _, right = scipy.linalg.svd(moved + UNTURNED * np.linalg.norm(moved) * np.eye(group.size))

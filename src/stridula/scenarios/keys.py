@@ -65,9 +65,10 @@ def with_values(tables: dict[str, Any], values: Iterable[tuple[Path, Any]]) -> d
 def find(key: str, tables: dict[str, Any], is_table: bool = False) -> Path:
     """Return the path of a key; the key of a table refers to its only number unless `is_table`."""
     asked = tuple(part.strip() for part in str(key).split("."))
-    if asked[0] not in outline.SHARED and outline.look_up(tables, asked) is not None and outline.node_at(asked, tables):
+    there = _placed(asked, tables)
+    if asked[0] not in outline.SHARED and outline.look_up(tables, there) is not None and outline.node_at(there, tables):
         # A full path to a present value needs no search among all keys.
-        return asked if is_table else _only_number(key, asked, tables)
+        return there if is_table else _only_number(key, there, tables)
     known = dict(outline.paths(tables))
     if "bodies" in tables and not outline.beams(tables):
         # Values shared by beams have no meaning without beams.
@@ -91,6 +92,16 @@ def find(key: str, tables: dict[str, Any], is_table: bool = False) -> Path:
         raise ScenarioError([f"key must name one place, got {brief(key)}, which fits {places}"])
     path = candidates[0]
     return path if is_table else _only_number(key, path, tables)
+
+
+def _placed(asked: tuple[str, ...], tables: Any) -> Path:
+    """Return the parts of a key as a full path, with numbers for the entries of lists."""
+    path: list[str | int] = []
+    for part in asked:
+        is_entry = isinstance(tables, list) and part.isdecimal()
+        path.append(int(part) if is_entry else part)
+        tables = outline.look_up(tables, path[-1:])
+    return tuple(path)
 
 
 def _only_number(key: str, path: Path, tables: dict[str, Any]) -> Path:

@@ -12,8 +12,10 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
+from ..bars.line_bars import Show
 from ..bodies import BodyPoint
 from ..checks import ArgumentError, brief, by_key, count, instance, listed, non_negative, positive
+from ..integration.bars import bar_if
 from ..linear.equilibrium import JAMMED, Equilibrium, find_equilibrium
 from ..linear.given import Status, Velocity, given_status, given_velocity
 from ..linear.mode_groups import ModeGroup, group_of
@@ -55,6 +57,7 @@ def mode_sensitivity(
     status: Status | None = None,
     velocity: Velocity | None = None,
     time: float | None = None,
+    progress: bool = False,
 ) -> xr.Dataset:
     """Return the derivatives of modes of sliding by parameters of the system.
 
@@ -97,6 +100,8 @@ def mode_sensitivity(
         Frequency [Hz] around which `modes` are chosen.
     status, velocity, time : optional
         As for `sliding_stability`.
+    progress : bool, optional
+        Whether a bar on standard error shows the parameters done.
 
     Returns
     -------
@@ -119,6 +124,7 @@ def mode_sensitivity(
         parameter: its value is 0, the status of a contact or the number of modes changes with it, or it has a kink.
     """
     positive("change", change)
+    instance("progress", progress, bool)
     chosen = _Chosen(modes, near)
     given: Any = source
     if not is_written(source):
@@ -130,12 +136,12 @@ def mode_sensitivity(
         else [value_of(key, tables) for key in keys_of("parameters", parameters)]
     )
     own = scenario_of_tables(tables).system if is_written(source) or overrides else given
-    with one_thread_each():
+    with one_thread_each(), bar_if(progress, "derivatives of modes") as show:
         base = Base(own, lambda system: _about(system, status, velocity, time))
         if base.equilibrium.kind == JAMMED and status is None:
             raise ArgumentError("source", "have an equilibrium with modes", got=base.equilibrium.kind)
         groups = {number: group_of(base.pencil, base.found, number) for number in chosen.of(base)}
-        changes, refused = base.all_changes(values, list(groups.values()), keeps_on=parameters is None)
+        changes, refused = base.all_changes(values, list(groups.values()), keeps_on=parameters is None, show=show)
         for name, where in by_key("masses", masses).items():
             slope = by_mass(base.pencil, displacement_rows(base.structure, point_of(name, where, own)))
             changes[f"mass at {name}"] = [group.pair.derivative(slope) for group in groups.values()]
@@ -205,17 +211,19 @@ class Base:
         return pencil_of(self.motion)
 
     def all_changes(
-        self, values: Sequence[Value], groups: Sequence[ModeGroup], keeps_on: bool
+        self, values: Sequence[Value], groups: Sequence[ModeGroup], keeps_on: bool, show: Show
     ) -> tuple[dict[str, list[Array]], list[str]]:
         """Return the derivatives by each value and, if this keeps on, the reasons why others have none."""
         found, refused = dict[str, list[Array]](), list[str]()
-        for value in values:
+        for number, value in enumerate(values):
+            show(number, len(values), f"{number} of {len(values)} parameters, {value.key}")
             try:
                 found[value.key] = self.changes(value, groups)
             except ValueError as error:
                 if not keeps_on:
                     raise
                 refused.append(str(error))
+        show(len(values), len(values), f"{len(values)} of {len(values)} parameters")
         return found, refused
 
     def changes(self, value: Value, groups: Sequence[ModeGroup]) -> list[Array]:
