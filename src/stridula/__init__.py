@@ -46,6 +46,7 @@ _HOME = {
         "FrictionFit",
         "FrictionLaw",
         "FrictionAlongTrack",
+        "FrictionField",
         "FrictionOverTemperature",
         "HeatedLayers",
         "HertzStiffness",

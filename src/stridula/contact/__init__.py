@@ -10,7 +10,7 @@ from .lugre import LuGre
 from .over_temperature import FrictionOverTemperature
 from .point_contact import PointContact
 from .profile import Profile
-from .random_fields import random_field
+from .random_fields import FrictionField, random_field
 from .rate_and_state import RateAndState
 from .rigid_track import RigidTrack
 from .run_out import RunOut
@@ -28,6 +28,7 @@ __all__ = [
     "Coulomb",
     "ExponentialWeakening",
     "FrictionAlongTrack",
+    "FrictionField",
     "FrictionFit",
     "FrictionLaw",
     "FrictionOverTemperature",

@@ -25,6 +25,7 @@ from .friction_law import FrictionLaw
 from .heating import Heating, check_heating
 from .point_contact import ALONG_X, PointContact
 from .profile import Profile
+from .random_fields import FrictionField
 from .rigid_track import RigidTrack
 from .run_out import RunOut
 from .stiffness import ContactStiffness, checked_stiffness, per_area
@@ -93,6 +94,8 @@ class SurfaceContact:
         Height of the surface of a track that turns, over the angle about its axis: in a body of revolution the angle
         of its points, on a meshed track that from the world x axis (z if the axis is along x) about the axis of
         `turning`. Its highest point is where the flat surface would be.
+    friction_field : FrictionField, optional
+        Random field by which the coefficients vary over the face; even if left out.
 
     Raises
     ------
@@ -117,6 +120,7 @@ class SurfaceContact:
     wear: Annotated[Sequence[float], Each(Number("m", least=0.0))] | None = None
     heating: Heating | None = None
     run_out: RunOut | None = None
+    friction_field: FrictionField | None = None
 
     def __post_init__(self) -> None:
         instance("body", self.body, (SolidBody, ReducedBody))
@@ -141,6 +145,8 @@ class SurfaceContact:
             instance("run_out", self.run_out, RunOut)
             if self._axis is None:
                 raise ArgumentError("run_out", "be left out on a track that does not turn", self.run_out)
+        if self.friction_field is not None:
+            instance("friction_field", self.friction_field, FrictionField)
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
         if len(self._laws) != self.areas.size:
             words = f"be one law, or have {self.areas.size}, one for each point"
@@ -186,8 +192,11 @@ class SurfaceContact:
     @cached_property
     def _laws(self) -> tuple[FrictionLaw, ...]:
         """The law of each point."""
-        given: Any = self.friction
-        return given if isinstance(given, tuple) else (given,) * self.areas.size
+        friction: Any = self.friction
+        given = friction if isinstance(friction, tuple) else (friction,) * self.areas.size
+        if self.friction_field is None or len(given) != self.areas.size:
+            return given
+        return self.friction_field.laws(given, self.places)
 
     @cached_property
     def contacts(self) -> tuple[PointContact, ...]:

@@ -32,7 +32,17 @@ from ..bodies.drawn_surfaces import drawn_of
 from ..bodies.sections import SECTIONS
 from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, listed, suggestion
-from ..contact import HEATINGS, LAWS, STIFFNESSES, PointContact, Profile, RigidTrack, RunOut, SurfaceContact
+from ..contact import (
+    HEATINGS,
+    LAWS,
+    STIFFNESSES,
+    FrictionField,
+    PointContact,
+    Profile,
+    RigidTrack,
+    RunOut,
+    SurfaceContact,
+)
 from ..declared import declared
 from ..disk import is_there
 from ..drives import Drive
@@ -57,7 +67,7 @@ PROBES = {probe.quantity: probe for probe in probes.PROBES}
 FRICTIONS: dict[str, Callable[..., Any]] = {law.law: law for law in LAWS}
 HEATED: dict[str, Callable[..., Any]] = {kind.kind: kind for kind in HEATINGS}
 STIFFNESS: dict[str, Callable[..., Any]] = {kind.kind: kind for kind in STIFFNESSES}
-SHAPES_OF_SURFACE: dict[str, Callable[..., Any]] = {"profile": Profile, "run_out": RunOut}
+OVER_SURFACE: dict[str, Callable[..., Any]] = {"profile": Profile, "run_out": RunOut, "friction_field": FrictionField}
 CONNECTIONS: dict[str, Callable[..., Any]] = {connection.kind: connection for connection in connections.CONNECTIONS}
 Tables = dict[str, Any]
 Place = tuple[str | int, ...]
@@ -284,14 +294,14 @@ class Builder:
             return ModalPlate(material, **table)
 
     def _of_contact(self, path: Place, table: Tables) -> dict[str, Any]:
-        """Remove friction, stiffness, heating and the shape of the surface from a table, and return them built."""
+        """Remove friction, stiffness, heating and what varies over the surface from a table, and return them built."""
         heated = table.get("heating") is not None
         found = self._friction(path, table) | self._of_kind("stiffness", STIFFNESS, path, table)
         found |= self._of_kind("heating", HEATED, path, table)
-        for name in SHAPES_OF_SURFACE:
+        for name in OVER_SURFACE:
             given = table.pop(name, None)
             if given is not None:
-                found[name] = self._shape((*path, name), given)
+                found[name] = self._over_surface((*path, name), given)
         if heated and "heating" not in found:
             # Friction would ask for the heating, whose problem is known.
             found.pop("friction", None)
@@ -378,13 +388,13 @@ class Builder:
             if table.get(name) is not None:
                 table[name] = self._history((*path, name), table[name])
         if table.get("profile") is not None:
-            table["profile"] = self._shape((*path, "profile"), table["profile"])
+            table["profile"] = self._over_surface((*path, "profile"), table["profile"])
         with self._within(*path):
             return RigidTrack(**{name: value for name, value in table.items() if value is not None})
 
-    def _shape(self, path: Place, table: Tables) -> Any:
+    def _over_surface(self, path: Place, table: Tables) -> Any:
         with self._within(*path):
-            return made_or_read(SHAPES_OF_SURFACE[str(path[-1])], table)
+            return made_or_read(OVER_SURFACE[str(path[-1])], table)
         return None
 
     def _circle(self, path: Place, table: Tables) -> Any:

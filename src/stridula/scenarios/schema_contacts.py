@@ -13,6 +13,7 @@ from ..contact import (
     STIFFNESSES,
     Coulomb,
     FrictionAlongTrack,
+    FrictionField,
     FrictionOverTemperature,
     PointContact,
     Profile,
@@ -214,6 +215,11 @@ else:
             _run_out | None,
             None,
             "height of the surface of a track that turns over the angle; flat if left out",
+        ),
+        "friction_field": (
+            table_of(FrictionField) | None,
+            None,
+            "random field by which the coefficients of friction vary over the face; even if left out",
         ),
         "overlay": (
             bool,
