@@ -46,6 +46,7 @@ _HOME = {
         "FrictionFit",
         "FrictionLaw",
         "FrictionAlongTrack",
+        "FrictionAroundTrack",
         "FrictionField",
         "FrictionOverTemperature",
         "HeatedLayers",

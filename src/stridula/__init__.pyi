@@ -89,6 +89,7 @@ from .connections import viscoelastic_layer as viscoelastic_layer
 from .contact import Coulomb as Coulomb
 from .contact import ExponentialWeakening as ExponentialWeakening
 from .contact import FrictionAlongTrack as FrictionAlongTrack
+from .contact import FrictionAroundTrack as FrictionAroundTrack
 from .contact import FrictionField as FrictionField
 from .contact import FrictionFit as FrictionFit
 from .contact import FrictionLaw as FrictionLaw

@@ -218,13 +218,9 @@ def test_what_cannot_be_is_named(make, words):
         make()
 
 
-def test_a_contact_without_places_is_refused():
-    one, two = st.PointMass(1.0, "one"), st.PointMass(1.0, "two")
+def test_a_temperature_beside_the_place_is_refused():
+    one = st.PointMass(1.0, "one")
     law = patched().contacts[0].friction
-    with pytest.raises(
-        ValueError, match=r"^friction must not depend on the place except on a rigid track, a beam or a"
-    ):
-        st.PointContact(one.centre, two.centre, friction=law)
     with pytest.raises(ValueError, match=r"^heating must be left out under friction that depends on the place"):
         st.PointContact(one.centre, st.RigidTrack(), friction=law, heating=st.HeatedLayers(1.0))
 

@@ -1,6 +1,7 @@
 """Contacts between bodies: friction laws, rigid tracks, point and surface contacts."""
 
 from .along_track import FrictionAlongTrack
+from .around_track import FrictionAroundTrack
 from .coulomb import Coulomb, StaticKinetic
 from .fits import FrictionFit, fit_friction
 from .friction_law import FrictionLaw
@@ -28,6 +29,7 @@ __all__ = [
     "Coulomb",
     "ExponentialWeakening",
     "FrictionAlongTrack",
+    "FrictionAroundTrack",
     "FrictionField",
     "FrictionFit",
     "FrictionLaw",

@@ -21,8 +21,8 @@ class FrictionAlongTrack(FrictionAtValues):
     """Friction given at some places along a track: patches of rust, of leaves or of oil, a worn sector of a disc.
 
     Between the places it lies on straight lines. The place is that of the material of the track under the tip, along
-    the first tangent: on a belt the one that has come there. It takes the value that it has where the contact is at the
-    end of a step for the next. Linear theory takes friction at the place of the start.
+    the first tangent: on a belt, or a disc that turns, the one that has come there. It takes the value that it has
+    where the contact is at the end of a step for the next. Linear theory takes friction at the place of the start.
 
     Parameters
     ----------

@@ -158,6 +158,11 @@ class FrictionLaw(ABC):
         return False
 
     @property
+    def depends_on_angle(self) -> bool:
+        """Whether friction depends on the angle about the axis of a turning track."""
+        return False
+
+    @property
     def depends_on_place(self) -> bool:
         """Whether friction depends on the place along the track."""
         return False

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..checks import instance
 from .along_track import FrictionAlongTrack
+from .around_track import FrictionAroundTrack
 from .coulomb import Coulomb, StaticKinetic
 from .friction_law import FrictionLaw
 from .lugre import LuGre
@@ -23,6 +24,7 @@ LAWS: tuple[type[FrictionLaw], ...] = (
     TabulatedFriction,
     FrictionOverTemperature,
     FrictionAlongTrack,
+    FrictionAroundTrack,
 )
 
 

@@ -150,13 +150,13 @@ class PointContact:
 
     def _check_place(self) -> None:
         """Raise if friction depends on a place along a track that has none, or on a temperature as well."""
+        if self.friction.depends_on_angle:
+            words = "not depend on the angle except under a face: use law.around(radius), which is along the track"
+            raise ArgumentError("friction", words, self.friction, got=str(self.friction))
         if not self.friction.depends_on_place:
             return
         if self.heating is not None:
             raise ArgumentError("heating", "be left out under friction that depends on the place", self.heating)
-        if self.rigid_track is None and self.path_body is None:
-            words = "not depend on the place except on a rigid track, a beam or a plate"
-            raise ArgumentError("friction", words, self.friction, got=str(self.friction))
 
     def _check_directions(self) -> None:
         for name in ("normal", "tangent"):

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from ..bodies.solids.places import FacePoints
 from ..checks import ArgumentError, choice, counted, finite, instance
 from ..declared import Each, Number, Position, check_declared
 from ..doubtful import warn_of
+from .around_track import FrictionAroundTrack
 from .axes import Axis
 from .coulomb import Coulomb
 from .facing import BEFORE
@@ -152,8 +153,10 @@ class SurfaceContact:
             words = f"be one law, or have {self.areas.size}, one for each point"
             raise ArgumentError("friction", words, got=counted(len(self._laws), "law"))
         if any(law.depends_on_place for law in self._laws):
-            words = "not depend on the place along the track, as points of a face have none: give each point its law"
+            words = "not depend on the place along the track, as points of a face have none: use FrictionAroundTrack"
             raise ArgumentError("friction", words, self.friction)
+        if self._axis is None and any(law.depends_on_angle for law in self._laws):
+            raise ArgumentError("friction", "not depend on the angle on a track that does not turn", self.friction)
         check_heating(self.heating, any(law.depends_on_temperature for law in self._laws))
         if self.wear is not None and len(self.wear) != self.areas.size:
             raise ArgumentError("wear", f"have {self.areas.size} depths, one for each point", got=str(len(self.wear)))
@@ -221,7 +224,7 @@ class SurfaceContact:
             contact = PointContact(
                 self.body.at(place.tolist()) if self.overlay else self.body.contact_point(self.face, number),
                 track,
-                friction=self._laws[number],
+                **self._friction_of(number, place),
                 gap=max(gap + self.gap, 0.0) + (0.0 if self.wear is None else self.wear[number]),
                 normal=tuple(facing.tolist()),
                 **self._directions(track, place, facing),
@@ -250,16 +253,32 @@ class SurfaceContact:
         over += gaps.min() - over.min()
         return [replace(one, at=at, gap=gap) for one, at, gap in zip(contacts, along, over.tolist(), strict=True)]
 
+    def _friction_of(self, number: int, place: Array) -> dict[str, Any]:
+        """Return the law of a point, and its place along the track if it depends on that, as arguments of a contact."""
+        law = self._laws[number]
+        if not law.depends_on_angle:
+            return {"friction": law}
+        axis, around = self._axis, cast("FrictionAroundTrack", law)
+        assert axis is not None
+        radius, angle = axis.around(place)
+        if radius <= self._reach:
+            return {"friction": around.at(angle)}
+        return {"friction": around.around(radius, axis.sense), "at": axis.sense * radius * angle}
+
+    @property
+    def _reach(self) -> float:
+        """Distance from its axis within which a point stays where it is [m]."""
+        return ON_THE_AXIS * float(np.ptp(self.places, axis=0).max())
+
     def _on_run_out(self, contacts: list[PointContact]) -> list[PointContact]:
         """Return the contacts on a track that is not flat: its highest point touches where the flat one would."""
         run_out, axis = self.run_out, self._axis
         assert run_out is not None
         assert axis is not None
-        reach = ON_THE_AXIS * float(np.ptp(self.places, axis=0).max())
         found = []
         for contact, place in zip(contacts, self.places, strict=True):
             radius, angle = axis.around(place)
-            profile = run_out.around(radius, axis.sense) if radius > reach else None
+            profile = run_out.around(radius, axis.sense) if radius > self._reach else None
             low = max(run_out.highest - float(run_out.height_at(angle)), 0.0)
             found.append(replace(contact, gap=contact.gap + low, at=axis.sense * radius * angle, profile=profile))
         return found

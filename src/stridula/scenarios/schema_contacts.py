@@ -13,6 +13,7 @@ from ..contact import (
     STIFFNESSES,
     Coulomb,
     FrictionAlongTrack,
+    FrictionAroundTrack,
     FrictionField,
     FrictionOverTemperature,
     PointContact,
@@ -52,11 +53,12 @@ else:
     _laws = [
         table_of(law, "law", law.law, "law of friction", is_usual=law is Coulomb, from_file=from_file(law))
         for law in LAWS
-        if law not in (FrictionOverTemperature, FrictionAlongTrack)
+        if law not in (FrictionOverTemperature, FrictionAlongTrack, FrictionAroundTrack)
     ]
     _at_each = {
         FrictionOverTemperature: "law of friction at each temperature, all of one kind",
         FrictionAlongTrack: "law of friction at each place, all of one kind",
+        FrictionAroundTrack: "law of friction at each angle, all of one kind",
     }
     _of_several = [
         table_of(
