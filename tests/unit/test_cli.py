@@ -332,7 +332,8 @@ def test_a_reduced_body_on_two_contacts_runs_exports_and_compares(stridula, tmp_
         ("stiffness=12 N", "contacts.0.friction.stiffness must be a number in 1/m or 1/mm, got '12 N'"),
         (
             "contacts.0.friction.law=lugr",
-            ", tabulated, over temperature, along track, around track, got 'lugr'; did you mean 'lugre'?",
+            ", lugre, rate and state, tabulated, over temperature, along track, around track, got 'lugr'; did you mean "
+            "'lugre'?",
         ),
     ],
 )

@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-import numpy as np
-
-from ..checks import ArgumentError, positive
+from ..checks import ArgumentError
 from ..declared import Each, Number, Own, check_declared
 from .along_track import FrictionAlongTrack
 from .at_values import FrictionAtValues
+from .axes import along_circle
 from .friction_law import FrictionLaw
 from .run_out import ROUND_OFF, TURN
 
@@ -81,8 +80,5 @@ class FrictionAroundTrack(FrictionAtValues):
         sense : {1.0, -1.0}, optional
             Direction of the abscissa: with the angle or against it.
         """
-        place = positive("radius", radius) * np.array([*self.angle, self.angle[0] + TURN])
-        laws = [*self.laws, self.laws[0]]
-        if sense > 0.0:
-            return FrictionAlongTrack(place.tolist(), laws, periodic=True)
-        return FrictionAlongTrack((-place[::-1]).tolist(), laws[::-1], periodic=True)
+        angle, laws = [*self.angle, self.angle[0] + TURN], [*self.laws, self.laws[0]]
+        return FrictionAlongTrack(*along_circle(angle, laws, radius, sense), periodic=True)

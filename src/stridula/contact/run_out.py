@@ -15,6 +15,7 @@ from ..arrays import Array
 from ..checks import ArgumentError, count, finite, instance, positive, rising
 from ..columns import read_rising
 from ..declared import Each, Number, check_declared
+from .axes import along_circle
 from .profile import Profile
 
 TURN = 2.0 * math.pi
@@ -169,7 +170,4 @@ class RunOut:
         sense : {1.0, -1.0}, optional
             Direction of the abscissa: with the angle or against it.
         """
-        place = positive("radius", radius) * np.array(self.angle)
-        if sense > 0.0:
-            return Profile(place.tolist(), self.height, periodic=True)
-        return Profile((-place[::-1]).tolist(), self.height[::-1], periodic=True)
+        return Profile(*along_circle(self.angle, self.height, radius, sense), periodic=True)

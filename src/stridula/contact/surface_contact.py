@@ -263,9 +263,9 @@ class SurfaceContact:
         radius, angle = axis.around(place)
         if radius <= self._reach:
             return {"friction": around.at(angle)}
-        return {"friction": around.around(radius, axis.sense), "at": axis.sense * radius * angle}
+        return {"friction": around.around(radius, axis.sense), "at": axis.abscissa(radius, angle)}
 
-    @property
+    @cached_property
     def _reach(self) -> float:
         """Distance from its axis within which a point stays where it is [m]."""
         return ON_THE_AXIS * float(np.ptp(self.places, axis=0).max())
@@ -280,7 +280,7 @@ class SurfaceContact:
             radius, angle = axis.around(place)
             profile = run_out.around(radius, axis.sense) if radius > self._reach else None
             low = max(run_out.highest - float(run_out.height_at(angle)), 0.0)
-            found.append(replace(contact, gap=contact.gap + low, at=axis.sense * radius * angle, profile=profile))
+            found.append(replace(contact, gap=contact.gap + low, at=axis.abscissa(radius, angle), profile=profile))
         return found
 
     @cached_property
